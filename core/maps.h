@@ -1,0 +1,46 @@
+// Illumination maps: irradiance (no albedo) in an atlas, RGB half float; layer 0 the front side, layer 1 the back of
+// double-sided surfaces (present only when the scene has any). One file; written to a temporary name and renamed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace saccade::core {
+
+/// How one object's mesh is cut into charts: its vertices are duplicated along chart borders.
+struct ObjectCharts {
+  std::vector<std::uint32_t> sourceVertex;  ///< new vertex -> vertex of the loaded mesh
+  std::vector<Vec2> uv;                     ///< per new vertex, [0, 1]^2
+  std::vector<std::uint32_t> indices;       ///< 3 per triangle, same triangle order as the loaded mesh
+};
+
+struct IlluminationMaps {
+  int width = 0, height = 0, layers = 0;
+  std::vector<std::uint16_t> texels;  ///< IEEE half, 3 per texel: ((layer * height + y) * width + x) * 3
+  std::vector<ObjectCharts> charts;   ///< one per object of the scene
+  std::string quality;                ///< preview, medium, high
+  std::uint64_t photons = 0;
+  std::uint64_t key = 0;              ///< sceneKey of the scene they were made for
+
+  /// Decoded texel; x, y clamped to the atlas.
+  Vec3 texel(int x, int y, int layer) const;
+};
+
+/// Cuts the scene's meshes as the charts say and fills lightmapUv. Call once, before building Embree or GL scenes.
+void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts);
+
+/// Hash of all that the maps depend on: geometry, materials, textures, lights, and the format's version.
+std::uint64_t sceneKey(const Scene& scene);
+
+/// $XDG_CACHE_HOME/saccade/<hash>.maps (or ~/.cache). `settings` tells quality, photons and seed apart.
+std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings);
+
+/// Throws core::Error: wrong magic, version, key (when `key` != 0), counts that overflow or a truncated file.
+IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key);
+void writeMaps(const std::filesystem::path& file, const IlluminationMaps& maps);
+
+}  // namespace saccade::core

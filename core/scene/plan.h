@@ -1,0 +1,36 @@
+// The plan: what a scene needs, with the reason for each line. Stages it leaves out do not run or allocate.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace saccade::core {
+
+struct PlanLine {
+  std::string stage;
+  bool on = false;
+  std::string reason;
+};
+
+struct Plan {
+  bool corrections = false;   ///< some object is non-diffuse
+  bool glossy = false;        ///< a rough specular lobe occurs: distributed reflection, light sampling
+  bool refraction = false;    ///< some object transmits
+  bool alphaTest = false;     ///< mask or blend occurs
+  bool normalMaps = false;
+  bool doubleSided = false;   ///< maps need a back layer
+  int recursionDepth = 0;     ///< longest specular chain followed
+  int lightmapSize = 0;       ///< atlas side in texels
+  float texelSizeMetres = 0;
+  double diffuseEnergyLeftOut = 0;  ///< area-weighted mean non-Lambert albedo of objects treated as diffuse
+  std::vector<PlanLine> lines;      ///< for `saccade info`
+};
+
+Plan makePlan(const Scene& scene);
+
+/// Cosine-averaged albedo of a material's lobes other than Lambert, textures averaged; [0, 1].
+float nonDiffuseAlbedo(const Scene& scene, const Material& material);
+
+}  // namespace saccade::core
