@@ -1,0 +1,100 @@
+// The three channels between the threads (Haber 2001, section 4.2). All bounded, all closable; a lock covers one
+// queue operation, never work. All functions may be called from any thread unless a line says otherwise.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/corrective/messages.h"
+
+namespace saccade::core {
+
+/// Latest wins: the analyzer takes the newest frame, whatever it missed.
+class SnapshotMailbox {
+ public:
+  void put(FramePtr frame);
+  /// Waits for a frame newer than the last one taken; null once closed.
+  FramePtr take();
+  /// True while the consumer waits: "if the analyzer thread requests a new frame" (step 8).
+  bool wanted() const;
+  void close();
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  FramePtr newest_;
+  bool waiting_ = false;
+  bool closed_ = false;
+};
+
+/// The priority queue of sample regions (PQ in the paper), one region per visible non-diffuse object.
+///
+/// Departure from the paper, section 4.4: a job's successor is entered when the job is handed out, not when it is done. The
+/// order of jobs is then a function of frame and priorities alone, whatever the number of tracers; that samples of a level
+/// can arrive after those of the next is met by the correction layer, which knows levels.
+class RegionQueue {
+ public:
+  explicit RegionQueue(int jobSize) : jobSize_(jobSize) {}
+
+  /// A new frame: every region starts again at its object's start level, with its last known priority.
+  void beginFrame(FramePtr frame);
+  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs. Regions keep their progress; the
+  /// reductions by level that they have suffered are applied again.
+  void setPriorities(std::span<const float> byId);
+  /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority, or, when the
+  /// level is finished, with the next level at 0.9 of the priority (section 3: 10 % rule; section 4.4).
+  /// Nothing when no region is left or the queue is closed.
+  std::optional<Job> tryPop();
+  /// Like tryPop, but waits for work; nothing only when closed.
+  std::optional<Job> pop();
+  void close();
+  /// No job left to hand out for the present frame.
+  bool exhausted() const;
+
+  static constexpr float kLevelReduction = 0.9f;
+
+ private:
+  struct Region {
+    std::uint32_t id;
+    float priority;
+    LatticeCursor cursor;
+    std::int64_t points;  ///< lattice points in the box per job, so that a job has about jobSize pixels on the mask
+  };
+  std::optional<Job> popLocked();
+
+  const int jobSize_;
+  mutable std::mutex mutex_;
+  std::condition_variable filled_;
+  FramePtr frame_;
+  std::vector<float> basePriority_;  ///< by id
+  std::vector<Region> heap_;
+  std::uint64_t nextSequence_ = 0;
+  bool closed_ = false;
+};
+
+/// FIFO of sample batches (SQ in the paper), bounded: a full queue holds its tracer back.
+class SampleQueue {
+ public:
+  explicit SampleQueue(std::size_t maxBatches = 4096) : maxBatches_(maxBatches) {}
+
+  /// Waits while full. False once closed (the batch is dropped).
+  bool push(SampleBatch batch);
+  std::optional<SampleBatch> tryPop();
+  /// Waits until a batch is there or the deadline passes or the queue is closed.
+  std::optional<SampleBatch> popUntil(std::chrono::steady_clock::time_point deadline);
+  void close();
+
+ private:
+  const std::size_t maxBatches_;
+  std::mutex mutex_;
+  std::condition_variable notEmpty_, notFull_;
+  std::deque<SampleBatch> batches_;
+  bool closed_ = false;
+};
+
+}  // namespace saccade::core
