@@ -27,8 +27,8 @@ struct Camera {
 class View {
  public:
   View() = default;
-  /// Throws core::Error for a degenerate camera (eye = at, up parallel to the line of sight, non-finite numbers,
-  /// field of view outside (0, 180)). `scene` sets near and far planes.
+  /// Throws core::Error for a degenerate camera (eye = at, up parallel to the line of sight, non-finite
+  /// numbers, field of view outside (0, 180)). `scene` sets near and far planes.
   View(const Camera& camera, int width, int height, const Bounds& scene);
 
   const Camera& camera() const { return camera_; }
@@ -39,12 +39,14 @@ class View {
   /// World to clip space, OpenGL depth convention (-1..1), y down.
   const Mat4& viewProjection() const { return viewProjection_; }
 
-  /// Direction through image position (pixels, +0.5 = centre), scaled so that its component along the line of sight
-  /// is 1: eye + t * direction is the point at view depth t.
+  /// Direction through image position (pixels, +0.5 = centre), scaled so that its component along the line of
+  /// sight is 1: eye + t * direction is the point at view depth t.
   Vec3 direction(Vec2 pixel) const;
   /// View depth (metres along the line of sight) of a depth-buffer value in [0, 1].
   float viewDepth(float windowDepth) const;
-  Vec3 unproject(Vec2 pixel, float windowDepth) const { return camera_.eye + viewDepth(windowDepth) * direction(pixel); }
+  Vec3 unproject(Vec2 pixel, float windowDepth) const {
+    return camera_.eye + viewDepth(windowDepth) * direction(pixel);
+  }
 
   struct Projected {
     Vec2 pixel;       ///< image position, may lie outside the image

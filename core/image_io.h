@@ -15,8 +15,8 @@ namespace saccade::core {
 /// Largest image that is decoded, in pixels.
 inline constexpr std::int64_t kMaxImagePixels = 16384LL * 16384LL;
 
-/// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB; CMYK is refused) from memory; the format is
-/// recognised by content. `name` is for messages. Throws core::Error.
+/// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB; CMYK is refused) from memory; the
+/// format is recognised by content. `name` is for messages. Throws core::Error.
 ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 readImage8(const std::filesystem::path& file);
 

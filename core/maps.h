@@ -1,5 +1,6 @@
-// Illumination maps: irradiance (no albedo) in an atlas, RGB half float; layer 0 the front side, layer 1 the back of
-// double-sided surfaces (present only when the scene has any). One file; written to a temporary name and renamed.
+// Illumination maps: irradiance (no albedo) in an atlas, RGB half float; layer 0 the front side, layer 1 the
+// back of double-sided surfaces (present only when the scene has any). One file; written to a temporary name
+// and renamed.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +25,14 @@ struct IlluminationMaps {
   std::vector<ObjectCharts> charts;   ///< one per object of the scene
   std::string quality;                ///< preview, medium, high
   std::uint64_t photons = 0;
-  std::uint64_t key = 0;              ///< sceneKey of the scene they were made for
+  std::uint64_t key = 0;  ///< sceneKey of the scene they were made for
 
   /// Decoded texel; x, y clamped to the atlas.
   Vec3 texel(int x, int y, int layer) const;
 };
 
-/// Cuts the scene's meshes as the charts say and fills lightmapUv. Call once, before building Embree or GL scenes.
+/// Cuts the scene's meshes as the charts say and fills lightmapUv. Call once, before building Embree or GL
+/// scenes.
 void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts);
 
 /// Hash of all that the maps depend on: geometry, materials, textures, lights, and the format's version.

@@ -1,9 +1,10 @@
 // The square-root-of-five lattice of Haber 2001, section 4.3, in integer arithmetic.
 //
-// Level l of kMaxLevel is the ideal (2 - i)^k Z[i], k = kMaxLevel - l, anchored at pixel (0, 0); pixel (x, y) is x + iy.
-// Departure from the paper: no rotation matrices and no clipping. (2 - i)^k is primitive of norm 5^k, so a pixel lies in
-// level l iff x = r_k * y (mod 5^k) with r_k a square root of -1 modulo 5^k: a row is walked in steps of 5^k.
-// Departure: splat sides are |Re b| + |Im b|, b = (2 - i)^k, not |b| max(|cos|, |sin|), which leaves holes.
+// Level l of kMaxLevel is the ideal (2 - i)^k Z[i], k = kMaxLevel - l, anchored at pixel (0, 0); pixel (x, y)
+// is x + iy. Departure from the paper: no rotation matrices and no clipping. (2 - i)^k is primitive of norm
+// 5^k, so a pixel lies in level l iff x = r_k * y (mod 5^k) with r_k a square root of -1 modulo 5^k: a row is
+// walked in steps of 5^k. Departure: splat sides are |Re b| + |Im b|, b = (2 - i)^k, not |b| max(|cos|,
+// |sin|), which leaves holes.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,8 @@ class Lattice {
   static int step(int level);
   /// Odd side of the square splat in pixels: 161, 79, 31, 13, 7, 3, 1 for levels 1..7.
   static int splatSide(int level);
-  /// Whether the pixel is a lattice point of the level (of coarser levels too: levels are nested). Any integers.
+  /// Whether the pixel is a lattice point of the level (of coarser levels too: levels are nested). Any
+  /// integers.
   static bool contains(int level, std::int64_t x, std::int64_t y);
   /// The coarsest level (1..kMaxLevel) the pixel belongs to.
   static int levelOf(std::int64_t x, std::int64_t y);
@@ -42,9 +44,10 @@ struct LatticeCursor {
   bool operator==(const LatticeCursor&) const = default;
 };
 
-/// Walks the points of `cursor.level` in `box` in row order, starting at the cursor, for at most `maxPoints` lattice points,
-/// calling visit(x, y). `omitCoarser` leaves out points of level - 1 (they still count as visited points, so the number
-/// of steps does not depend on it). Returns the cursor to go on from; its y is box.y1 when the level is done.
+/// Walks the points of `cursor.level` in `box` in row order, starting at the cursor, for at most `maxPoints`
+/// lattice points, calling visit(x, y). `omitCoarser` leaves out points of level - 1 (they still count as
+/// visited points, so the number of steps does not depend on it). Returns the cursor to go on from; its y is
+/// box.y1 when the level is done.
 template <class Visit>
 LatticeCursor walkLattice(const PixelBox& box, LatticeCursor cursor, std::int64_t maxPoints, bool omitCoarser,
                           Visit&& visit) {

@@ -7,24 +7,25 @@
 
 #include "core/camera.h"
 #include "core/corrective/lattice.h"
+#include "core/image.h"
 #include "core/math/types.h"
 
 namespace saccade::core {
 
 /// Where an object stands in a frame's ID mask.
 struct ObjectExtent {
-  PixelBox box;                  ///< tight
-  std::uint32_t pixels = 0;      ///< on the mask
-  int startLevel = 1;            ///< first level with at least N_min lattice points on the mask (else kMaxLevel)
+  PixelBox box;              ///< tight
+  std::uint32_t pixels = 0;  ///< on the mask
+  int startLevel = 1;        ///< first level with at least N_min lattice points on the mask (else kMaxLevel)
 };
 
 /// One rendered base layer as read back. Main thread makes it, any thread reads it.
 struct FrameSnapshot {
-  std::uint64_t epoch = 0;      ///< camera epoch: raised whenever camera, scene or settings change
+  std::uint64_t epoch = 0;  ///< camera epoch: raised whenever camera, scene or settings change
   View view;
   /// Per pixel: linear base radiance RGB and, as a float, the ID (0 = diffuse or background). Row 0 = top.
   std::vector<Vec4> baseAndId;
-  std::vector<float> depth;     ///< depth buffer [0, 1], 1 = nothing drawn
+  std::vector<float> depth;           ///< depth buffer [0, 1], 1 = nothing drawn
   std::vector<ObjectExtent> extents;  ///< by id; [0] unused
   std::uint32_t nonDiffusePixels = 0;
 
@@ -33,28 +34,36 @@ struct FrameSnapshot {
 };
 using FramePtr = std::shared_ptr<const FrameSnapshot>;
 
-/// Fills extents (idCount + 1 entries) and nonDiffusePixels from the mask. One pass for boxes and counts, lattice
-/// points counted per level for the start level with N_min (Haber 2001, section 4.5; design fact 3).
+/// What the analyzer looks at: the frame and the picture as displayed (base + corrections, after the display
+/// transform).
+struct AnalysisInput {
+  FramePtr frame;
+  std::shared_ptr<const ImageRgba8> display;
+};
+
+/// Fills extents (idCount + 1 entries) and nonDiffusePixels from the mask. One pass for boxes and counts,
+/// lattice points counted per level for the start level with N_min (Haber 2001, section 4.5; design fact 3).
 void measureExtents(FrameSnapshot& frame, std::uint32_t idCount, int nMin);
 
 /// One corrective sample (Haber 2001, sections 4.3 and 4.5).
 struct Sample {
-  std::int32_t x = 0, y = 0;     ///< pixel it was traced for
-  std::uint32_t id = 0;          ///< object
-  std::uint8_t level = 1;        ///< lattice level it was traced at
-  std::uint8_t thread = 0;       ///< tracer that made it (overlay)
-  bool fromDepth = false;        ///< the ray missed the named object; the point of the depth buffer was shaded
-  Vec3 correction{0};            ///< full radiance - base, linear, signed
-  Vec3 position{0};              ///< world, on the object
-  Vec3 normal{0};                ///< shading normal, unit
-  float cosView = 0;             ///< <normal, v>, v = unit vector from position to eye
-  float viewDepth = 0;           ///< metres along the line of sight
+  std::int32_t x = 0, y = 0;  ///< pixel it was traced for
+  std::uint32_t id = 0;       ///< object
+  std::uint8_t level = 1;     ///< lattice level it was traced at
+  std::uint8_t thread = 0;    ///< tracer that made it (overlay)
+  bool fromDepth = false;     ///< the ray missed the named object; the point of the depth buffer was shaded
+  Vec3 correction{0};         ///< full radiance - base, linear, signed
+  Vec3 position{0};           ///< world, on the object
+  Vec3 normal{0};             ///< shading normal, unit
+  float cosView = 0;          ///< <normal, v>, v = unit vector from position to eye
+  float viewDepth = 0;        ///< metres along the line of sight
 };
 
 struct SampleBatch {
   std::uint64_t epoch = 0;
-  std::uint64_t sequence = 0;    ///< number of the job in the order in which jobs were handed out within the epoch
-  std::vector<Sample> samples;   ///< in lattice order
+  std::uint64_t sequence =
+      0;  ///< number of the job in the order in which jobs were handed out within the epoch
+  std::vector<Sample> samples;  ///< in lattice order
 };
 
 /// One piece of work for a tracer: at most `points` lattice points of one level in one object's box.
@@ -62,7 +71,7 @@ struct Job {
   FramePtr frame;
   std::uint32_t id = 0;
   LatticeCursor begin;
-  std::int64_t points = 0;       ///< lattice points in the box, mask or not
+  std::int64_t points = 0;  ///< lattice points in the box, mask or not
   bool omitCoarser = false;
   std::uint64_t sequence = 0;
   float priority = 0;

@@ -1,5 +1,5 @@
-// The three channels between the threads (Haber 2001, section 4.2). All bounded, all closable; a lock covers one
-// queue operation, never work. All functions may be called from any thread unless a line says otherwise.
+// The three channels between the threads (Haber 2001, section 4.2). All bounded, all closable; a lock covers
+// one queue operation, never work. All functions may be called from any thread unless a line says otherwise.
 #pragma once
 
 #include <chrono>
@@ -17,9 +17,9 @@ namespace saccade::core {
 /// Latest wins: the analyzer takes the newest frame, whatever it missed.
 class SnapshotMailbox {
  public:
-  void put(FramePtr frame);
-  /// Waits for a frame newer than the last one taken; null once closed.
-  FramePtr take();
+  void put(AnalysisInput input);
+  /// Waits for a frame newer than the last one taken; nothing once closed.
+  std::optional<AnalysisInput> take();
   /// True while the consumer waits: "if the analyzer thread requests a new frame" (step 8).
   bool wanted() const;
   void close();
@@ -27,28 +27,29 @@ class SnapshotMailbox {
  private:
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
-  FramePtr newest_;
+  std::optional<AnalysisInput> newest_;
   bool waiting_ = false;
   bool closed_ = false;
 };
 
 /// The priority queue of sample regions (PQ in the paper), one region per visible non-diffuse object.
 ///
-/// Departure from the paper, section 4.4: a job's successor is entered when the job is handed out, not when it is done. The
-/// order of jobs is then a function of frame and priorities alone, whatever the number of tracers; that samples of a level
-/// can arrive after those of the next is met by the correction layer, which knows levels.
+/// Departure from the paper, section 4.4: a job's successor is entered when the job is handed out, not when
+/// it is done. The order of jobs is then a function of frame and priorities alone, whatever the number of
+/// tracers; that samples of a level can arrive after those of the next is met by the correction layer, which
+/// knows levels.
 class RegionQueue {
  public:
   explicit RegionQueue(int jobSize) : jobSize_(jobSize) {}
 
   /// A new frame: every region starts again at its object's start level, with its last known priority.
   void beginFrame(FramePtr frame);
-  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs. Regions keep their progress; the
-  /// reductions by level that they have suffered are applied again.
+  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs. Regions keep their
+  /// progress; the reductions by level that they have suffered are applied again.
   void setPriorities(std::span<const float> byId);
-  /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority, or, when the
-  /// level is finished, with the next level at 0.9 of the priority (section 3: 10 % rule; section 4.4).
-  /// Nothing when no region is left or the queue is closed.
+  /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority,
+  /// or, when the level is finished, with the next level at 0.9 of the priority (section 3: 10 % rule;
+  /// section 4.4). Nothing when no region is left or the queue is closed.
   std::optional<Job> tryPop();
   /// Like tryPop, but waits for work; nothing only when closed.
   std::optional<Job> pop();
@@ -63,7 +64,8 @@ class RegionQueue {
     std::uint32_t id;
     float priority;
     LatticeCursor cursor;
-    std::int64_t points;  ///< lattice points in the box per job, so that a job has about jobSize pixels on the mask
+    std::int64_t
+        points;  ///< lattice points in the box per job, so that a job has about jobSize pixels on the mask
   };
   std::optional<Job> popLocked();
 

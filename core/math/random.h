@@ -1,5 +1,5 @@
-// Random numbers keyed by (pixel, sub-sample, dimension, seed): not by level, thread or region, so that a pixel's value
-// does not depend on who traces it when.
+// Random numbers keyed by (pixel, sub-sample, dimension, seed): not by level, thread or region, so that a
+// pixel's value does not depend on who traces it when.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,9 @@ namespace saccade::core {
 /// Avalanching 64 -> 32 bit mix of its arguments.
 std::uint32_t hashKey(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 
-/// One pixel's one sub-sample. Successive calls take successive dimensions. Over the sub-samples of one pixel each
-/// (pair of) dimension is an Owen-scrambled (0, 2)-sequence, shuffled between dimensions: padded, as in Burley 2020.
+/// One pixel's one sub-sample. Successive calls take successive dimensions. Over the sub-samples of one pixel
+/// each (pair of) dimension is an Owen-scrambled (0, 2)-sequence, shuffled between dimensions: padded, as in
+/// Burley 2020.
 class PixelSampler {
  public:
   PixelSampler(std::uint32_t x, std::uint32_t y, std::uint64_t subSample, std::uint32_t seed);

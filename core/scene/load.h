@@ -11,23 +11,25 @@
 namespace saccade::core {
 
 struct LoadOptions {
-  float unitScale = 1;             ///< file units to metres
-  int scene = -1;                  ///< glTF scene index; -1 = the file's default
+  float unitScale = 1;  ///< file units to metres
+  int scene = -1;       ///< glTF scene index; -1 = the file's default
   double timeSeconds = 0;
   float nonDiffuseThreshold = 0.1f;  ///< --nondiffuse
   std::vector<std::string> lights;   ///< --light TYPE:key=value,... (see parseLight)
 };
 
-/// Reads a scene, completes it (normals, clusters, ids, hierarchy, default light and camera, plan input) and returns it.
-/// Throws core::Error naming file, element and rule. Repairs are counted in Scene::warnings. Any thread.
+/// Reads a scene, completes it (normals, clusters, ids, hierarchy, default light and camera, plan input) and
+/// returns it. Throws core::Error naming file, element and rule. Repairs are counted in Scene::warnings. Any
+/// thread.
 Scene loadScene(const std::filesystem::path& file, const LoadOptions& options);
 
-/// Everything after parsing, for scenes made in memory (tests, generators): clusters, closedness, ids, bounds, hierarchy,
-/// default light and camera. Objects must hold mesh, material, name, node, primitive.
+/// Everything after parsing, for scenes made in memory (tests, generators): clusters, closedness, ids,
+/// bounds, hierarchy, default light and camera. Objects must hold mesh, material, name, node, primitive.
 void completeScene(Scene& scene, const LoadOptions& options);
 
-/// Adds what one --light option describes: point:pos=x,y,z,power=r,g,b | spot:... | directional:dir=..,irradiance=.. |
-/// panel:at=x,y,z,size=w,h,radiance=r,g,b (faces down unless dir= is given). Throws core::UsageError with an example.
+/// Adds what one --light option describes: point:pos=x,y,z,power=r,g,b | spot:... |
+/// directional:dir=..,irradiance=.. | panel:at=x,y,z,size=w,h,radiance=r,g,b (faces down unless dir= is
+/// given). Throws core::UsageError with an example.
 void addLight(Scene& scene, const std::string& description);
 
 }  // namespace saccade::core

@@ -15,14 +15,14 @@ struct PlanLine {
 };
 
 struct Plan {
-  bool corrections = false;   ///< some object is non-diffuse
-  bool glossy = false;        ///< a rough specular lobe occurs: distributed reflection, light sampling
-  bool refraction = false;    ///< some object transmits
-  bool alphaTest = false;     ///< mask or blend occurs
+  bool corrections = false;  ///< some object is non-diffuse
+  bool glossy = false;       ///< a rough specular lobe occurs: distributed reflection, light sampling
+  bool refraction = false;   ///< some object transmits
+  bool alphaTest = false;    ///< mask or blend occurs
   bool normalMaps = false;
-  bool doubleSided = false;   ///< maps need a back layer
-  int recursionDepth = 0;     ///< longest specular chain followed
-  int lightmapSize = 0;       ///< atlas side in texels
+  bool doubleSided = false;  ///< maps need a back layer
+  int recursionDepth = 0;    ///< longest specular chain followed
+  int lightmapSize = 0;      ///< atlas side in texels
   float texelSizeMetres = 0;
   double diffuseEnergyLeftOut = 0;  ///< area-weighted mean non-Lambert albedo of objects treated as diffuse
   std::vector<PlanLine> lines;      ///< for `saccade info`

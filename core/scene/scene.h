@@ -47,9 +47,9 @@ struct Material {
   float normalScale = 1;
   Vec3 emission{0};  ///< radiance, KHR_materials_emissive_strength multiplied in
   TextureSlot emissionTexture;
-  float ior = 1.5f;           ///< KHR_materials_ior
-  float specular = 1;         ///< KHR_materials_specular, A of its texture
-  Vec3 specularColor{1};      ///< KHR_materials_specular, RGB of its texture
+  float ior = 1.5f;       ///< KHR_materials_ior
+  float specular = 1;     ///< KHR_materials_specular, A of its texture
+  Vec3 specularColor{1};  ///< KHR_materials_specular, RGB of its texture
   TextureSlot specularTexture;
   TextureSlot specularColorTexture;
   float transmission = 0;  ///< KHR_materials_transmission, R of its texture
@@ -65,11 +65,12 @@ struct Material {
 /// Triangles; every attribute array is empty or as long as positions. World space in Object.
 struct Mesh {
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;     ///< unit, always filled by the loader (flat ones where the file has none)
-  std::vector<Vec4> tangents;    ///< xyz unit, w = +-1; filled when the material has a normal map
+  std::vector<Vec3> normals;   ///< unit, always filled by the loader (flat ones where the file has none)
+  std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when the material has a normal map
   std::vector<Vec2> uv0, uv1;
-  std::vector<Vec4> colors;      ///< COLOR_0, linear
-  std::vector<Vec2> lightmapUv;  ///< into the illumination map atlas, [0, 1]^2; filled by applyCharts (core/maps.h)
+  std::vector<Vec4> colors;  ///< COLOR_0, linear
+  std::vector<Vec2>
+      lightmapUv;  ///< into the illumination map atlas, [0, 1]^2; filled by applyCharts (core/maps.h)
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from the front
 
   std::size_t triangleCount() const { return indices.size() / 3; }
@@ -84,7 +85,7 @@ struct Node {
 
 /// A group of near primitives of one material: what the ID mask names (Haber 2001, section 4.1).
 struct Object {
-  std::string name;   ///< node name, with primitive and cluster where there are several
+  std::string name;  ///< node name, with primitive and cluster where there are several
   int node = -1;
   int primitive = 0;
   int cluster = 0;
@@ -92,7 +93,7 @@ struct Object {
   std::uint32_t id = 0;  ///< 1.. for non-diffuse objects, in order of (node, primitive, cluster); 0 = diffuse
   bool closed = false;   ///< watertight: transmission refracts as a solid, else as a thin sheet
   float nonDiffuseAlbedo = 0;  ///< cosine-averaged albedo of the lobes other than Lambert, [0, 1]
-  Mesh mesh;             ///< world space
+  Mesh mesh;                   ///< world space
   Bounds bounds;
 };
 
@@ -110,7 +111,7 @@ struct PunctualLight {
 /// One node of the object hierarchy: grouped by material, then by nearness. Leaves name one object.
 struct HierarchyNode {
   Bounds bounds;
-  int object = -1;             ///< >= 0: a leaf
+  int object = -1;  ///< >= 0: a leaf
   int child[2] = {-1, -1};
 };
 
@@ -126,7 +127,8 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<HierarchyNode> hierarchy;  ///< [0] is the root; empty for an empty scene
   Bounds bounds;
-  bool defaultLight = false;   ///< the scene had no light: a panel was added (design: 1 m, 0.95 of the height, radiance 15)
+  bool defaultLight =
+      false;  ///< the scene had no light: a panel was added (design: 1 m, 0.95 of the height, radiance 15)
   bool defaultCamera = false;  ///< the scene had no camera: cameras[0] frames the bounds
   Warnings warnings;
 
