@@ -1,0 +1,39 @@
+// Corrective samples (Haber 2001, section 4.3): full radiance of a non-diffuse surface minus what the base
+// layer shows there. Recursive ray tracing with importance-sampled area lights and distributed glossy rays;
+// diffuse light comes from the illumination maps.
+//
+// A sample depends on nothing but pixel, frame (camera, id, depth), scene, maps and options: bit-identical on
+// any thread.
+#pragma once
+
+#include <cstdint>
+
+#include "core/corrective/messages.h"
+#include "raytrace/world.h"
+
+namespace saccade::raytrace {
+
+struct CorrectiveOptions {
+  std::uint32_t seed = 1;
+  int samplesPerPixel = 1;  ///< sub-samples; all through the pixel's centre
+  int glossyRays = 2;       ///< rays of a rough lobe at the first hit; 1 deeper
+};
+
+class CorrectiveTracer {
+ public:
+  /// The world must outlive the tracer.
+  CorrectiveTracer(const World& world, const CorrectiveOptions& options);
+
+  /// The sample of pixel (x, y), whose id in the frame must not be 0. `level` is only a label. Any thread; no
+  /// allocation. A correction that is not finite becomes 0 and is counted.
+  core::Sample trace(const core::FrameSnapshot& frame, int x, int y, int level, RayCounters& counters) const;
+
+  const World& world() const { return world_; }
+  const CorrectiveOptions& options() const { return options_; }
+
+ private:
+  const World& world_;
+  CorrectiveOptions options_;
+};
+
+}  // namespace saccade::raytrace

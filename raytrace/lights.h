@@ -1,0 +1,121 @@
+// Lights: emissive triangles grouped by object, and punctual lights. Importance sampling in two steps (Haber
+// 2001, section 4.3: "importance sampling for area light sources"): a group by its estimated contribution at
+// the point (at most kFewGroups groups) or by power, then a triangle by power, then a point by area.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "raytrace/ray.h"
+
+namespace saccade::raytrace {
+
+class World;
+
+/// Walker's alias table over weights >= 0; all zero = empty.
+class AliasTable {
+ public:
+  AliasTable() = default;
+  explicit AliasTable(std::span<const double> weights);
+  bool empty() const { return slots_.empty(); }
+  /// u in [0, 1); `rest` gets a fresh number in [0, 1).
+  std::uint32_t sample(float u, float& rest) const;
+  float probability(std::uint32_t i) const { return slots_[i].probability; }
+  double total() const { return total_; }
+
+ private:
+  struct Slot {
+    float keep = 1;
+    std::uint32_t alias = 0;
+    float probability = 0;
+  };
+  std::vector<Slot> slots_;
+  double total_ = 0;
+};
+
+struct LightSample {
+  Vec3 direction{0};   ///< unit, towards the light
+  float distance = 0;  ///< shadow rays end before it: see shadowRay
+  Vec3 radiance{0};    ///< delta: already divided by distance squared (irradiance at normal incidence)
+  float pdf = 0;       ///< per solid angle; for a delta light the probability of choosing it
+  bool delta = false;
+};
+
+/// A photon's start. Any thread.
+struct EmissionSample {
+  Vec3 origin{0};
+  Vec3 normal{0};  ///< of the emitter, 0 for punctual lights
+  Vec3 direction{0, -1, 0};
+  Vec3 flux{0};  ///< watts this photon stands for when one photon is emitted: divide by the number of photons
+  float offset = 0;  ///< for offsetOrigin; 0 for punctual lights
+};
+
+/// Group weights at one point, kept for the pdf of rays that leave it.
+struct LightChoice {
+  static constexpr int kFewGroups = 16;
+  Vec3 point{0};
+  float cumulative[kFewGroups] = {};
+  bool byPower = false;
+};
+
+class Lights {
+ public:
+  static constexpr int kFewGroups = LightChoice::kFewGroups;
+
+  /// `world`'s records must be filled; sets their `light` through the span of indices returned by lightOf().
+  Lights(const core::Scene& scene, const World& world);
+
+  bool empty() const { return groups_.empty(); }
+  /// Emissive triangles, the order of TriangleRecord::light.
+  std::size_t emissiveCount() const { return emissive_.size(); }
+  std::uint32_t emissiveTriangle(std::size_t i) const { return emissive_[i].triangle; }
+  double totalPower() const { return groupTable_.total(); }  ///< watts, luminance-weighted
+
+  LightChoice choose(const Vec3& point) const;
+  /// False when the sample carries no light (behind, grazing, no area).
+  bool sample(const LightChoice& choice, float uLight, const Vec2& u, LightSample& out) const;
+  /// Density per solid angle with which sample() would have made a ray that hit this world triangle at
+  /// distance t with unit direction. 0 for triangles that are no light or face away.
+  float pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3& direction, float t) const;
+
+  EmissionSample sampleEmission(float uLight, const Vec2& uPosition, const Vec2& uDirection) const;
+
+ private:
+  struct Emissive {
+    std::uint32_t triangle;
+    std::uint32_t group;
+    float area;
+    float choiceInGroup;  ///< probability
+    bool doubleSided;
+  };
+  struct Group {
+    std::uint32_t first = 0, count = 0;  ///< emissive triangles; count 0 = punctual
+    std::int32_t punctual = -1;
+    Vec3 center{0};
+    float radius = 0;
+    float power = 0;
+    Vec3 normal{0};  ///< common normal when flat and single-sided, else 0
+    AliasTable triangles;
+  };
+  void addEmissive(const core::Scene& scene);
+  void addPunctual(const core::Scene& scene);
+  float estimate(const Group& group, const Vec3& point) const;
+  float groupProbability(const LightChoice& choice, std::uint32_t group) const;
+  bool sampleTriangle(const Group& group, const Vec3& point, float uTriangle, const Vec2& u,
+                      LightSample& out) const;
+  bool samplePunctual(const Group& group, const Vec3& point, LightSample& out) const;
+
+  const core::Scene& scene_;
+  const World& world_;
+  std::vector<Emissive> emissive_;
+  std::vector<Group> groups_;
+  AliasTable groupTable_;  ///< by power
+};
+
+/// The shadow ray from a surface point to a light sample; it ends before the light.
+struct Surface;
+Ray shadowRay(const Surface& from, const LightSample& light);
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,41 @@
+// Unbiased path tracing of the whole scene: the reference for everything else. Next-event estimation and BSDF
+// sampling joined by the power heuristic (Veach 1997), Russian roulette, box filter of one pixel.
+#pragma once
+
+#include <cstdint>
+
+#include "core/camera.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "raytrace/world.h"
+
+namespace saccade::raytrace {
+
+enum class Transport {
+  all,     ///< every lobe
+  diffuse  ///< what base layer and maps claim: emission and Lambert with the base layer's diffuse factor
+};
+
+struct PathOptions {
+  int samplesPerPixel = 64;
+  int bounces = 12;  ///< scattering events; 0 = emission only, 1 = direct light
+  Transport transport = Transport::all;
+  std::uint32_t seed = 1;
+  int threads = 0;        ///< 0 = on the calling thread
+  bool variance = false;  ///< fill PathResult::variance
+};
+
+struct PathResult {
+  core::ImageRgb radiance;
+  core::ImageRgb variance;  ///< of the pixel's mean, per channel
+  RayCounters counters;
+};
+
+/// The same image for any number of threads. Throws core::Error when stopped.
+PathResult tracePaths(const World& world, const core::View& view, const PathOptions& options,
+                      const core::Progress& progress);
+
+/// Radiance along one ray (unit direction), for tests: the mean of options.samplesPerPixel paths.
+Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options, RayCounters& counters);
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,59 @@
+// Rays, hits, counters, and the one guard that every ray passes.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/math/types.h"
+
+namespace saccade::raytrace {
+
+using core::Vec2;
+using core::Vec3;
+
+/// direction need not be unit; t counts in its length. 0 <= tNear <= tFar.
+struct Ray {
+  Vec3 origin{0};
+  Vec3 direction{0, 0, -1};
+  float tNear = 0;
+  float tFar = core::kInfinity;
+};
+
+/// Nearest hit. Position = (1 - u - v) p0 + u p1 + v p2.
+struct Hit {
+  std::uint32_t triangle = 0;  ///< index over the whole world (World::record)
+  float t = 0, u = 0, v = 0;
+  Vec3 ng{0};  ///< geometric normal, not unit; its front is the triangle's front
+};
+
+class RayLog;
+
+/// One per thread. `log`, when set, receives every ray in order (benchmark only).
+struct RayCounters {
+  std::uint64_t rays = 0;       ///< traced, shadow rays included
+  std::uint64_t refused = 0;    ///< stopped by the guard: a miss
+  std::uint64_t nonFinite = 0;  ///< corrections that were not finite and became 0
+  RayLog* log = nullptr;
+
+  void add(const RayCounters& o) {
+    rays += o.rays;
+    refused += o.refused;
+    nonFinite += o.nonFinite;
+  }
+};
+
+/// The guard. Embree 3.13.5 as Debian builds it aborts on NaN, Inf, components above 1.8e18 and negative
+/// tNear; a zero or subnormal direction has no meaning. False = the ray is a miss.
+inline bool traceable(const Ray& r) {
+  constexpr float kLargest = 1.8e18f;
+  const auto in = [](float x) { return std::fabs(x) <= kLargest; };  // false for NaN
+  const bool bounded = in(r.origin.x) & in(r.origin.y) & in(r.origin.z) & in(r.direction.x) &
+                       in(r.direction.y) & in(r.direction.z);
+  const float longest =
+      std::fmax(std::fabs(r.direction.x), std::fmax(std::fabs(r.direction.y), std::fabs(r.direction.z)));
+  return bounded & (longest >= std::numeric_limits<float>::min()) & (r.tNear >= 0) & (r.tNear <= r.tFar) &
+         (r.tNear <= kLargest);
+}
+
+}  // namespace saccade::raytrace

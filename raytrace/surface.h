@@ -1,0 +1,54 @@
+// A hit, interpolated: what shading reads.
+#pragma once
+
+#include "raytrace/material.h"
+#include "raytrace/ray.h"
+#include "raytrace/world.h"
+
+namespace saccade::raytrace {
+
+struct Surface {
+  Vec3 position{0};
+  Vec3 ng{0};  ///< geometric normal, unit, on the side the ray came from
+  Vec3 ns{0};  ///< shading normal, unit, same side; bent so that mirror directions stay above the surface
+  Vec2 uv0{0};
+  Vec2 lightmapUv{0};
+  std::uint32_t triangle = 0, object = 0;
+  float offset = 0;     ///< for offsetOrigin
+  bool front = true;    ///< the ray came from the triangle's front
+  bool closed = false;  ///< transmission is that of a solid
+  const CompiledMaterial* material = nullptr;
+  MaterialPoint point;
+
+  /// A ray from here, safe against its own surface.
+  Ray leave(const Vec3& direction) const {
+    return {offsetOrigin(position, ng, direction, offset), direction, 0, core::kInfinity};
+  }
+  /// The side seen scatters light (a single-sided opaque surface is black from behind).
+  bool scatters() const { return front || material->scattersBehind(); }
+  /// The side seen emits.
+  Vec3 emitted() const { return front || material->doubleSided ? point.emission : Vec3(0); }
+};
+
+/// All of it. `direction` is the ray's, unit. Any thread.
+Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
+
+/// The barycentric point of a triangle, seen from its front (or back) along its normal: for map baking.
+Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, bool front);
+
+/// Emission + base formula (core/scene/specular_albedo.h) under the illumination maps, times coverage for
+/// blend: the radiance that the base layer shows at this hit. Cheap: reads one record and its textures.
+struct BaseLight {
+  Vec3 reflected{0};  ///< from the maps (or baseColor for unlit)
+  Vec3 emitted{0};
+  float coverage = 1;  ///< both are not yet multiplied by it
+};
+BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction);
+
+/// Diffuse reflectance that maps and base layer use: baseColor (1 - metallic) (1 - transmission)
+/// diffuseFactor.
+inline Vec3 baseAlbedo(const MaterialPoint& m) {
+  return m.baseColor * ((1 - m.metallic) * (1 - m.transmission) * m.diffuseFactor);
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,109 @@
+// The scene as rays see it: Embree's trees, packed per-triangle data, light tables, illumination maps.
+//
+// One Embree scene holds all triangles; each non-diffuse object has one more (same geometry, no copy), for
+// primary rays: the stencil says which object a pixel shows (design fact 9).
+// Read-only once built: all const functions may be called from any thread at once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/maps.h"
+#include "core/scene/plan.h"
+#include "core/scene/scene.h"
+#include "raytrace/material.h"
+#include "raytrace/ray.h"
+
+namespace saccade::raytrace {
+
+class Lights;
+
+/// What a hit needs when its light comes from the maps: one cache line.
+struct alignas(64) TriangleRecord {
+  Vec2 lightmapUv[3];
+  Vec2 uv0[3];
+  std::uint32_t object = 0;
+  std::uint32_t material = 0;
+  float offset = 0;         ///< metres by which rays start off this triangle, along the geometric normal
+  std::int32_t light = -1;  ///< index of the emissive triangle in Lights
+};
+
+/// What a hit needs beyond that when rays leave it.
+struct TriangleShape {
+  Vec3 position[3];
+  Vec3 normal[3];
+};
+
+class World {
+ public:
+  /// `scene` is charted (core::applyCharts) when maps are used; it must outlive the world. Builds on the
+  /// calling thread. Throws core::Error when Embree fails.
+  World(const core::Scene& scene, const core::Plan& plan);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  const core::Scene& scene() const { return scene_; }
+  int recursionDepth() const { return recursionDepth_; }
+  const Lights& lights() const { return *lights_; }
+
+  /// Irradiance for diffuse hits; the texels are copied into the tracer's layout. Without maps irradiance is
+  /// 0. Not while another thread traces.
+  void setMaps(const core::IlluminationMaps* maps);
+  bool hasMaps() const { return !mapTexels_.empty(); }
+  /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
+  Vec3 irradiance(const Vec2& lightmapUv, int layer) const;
+
+  /// Nearest hit over all triangles; alpha-masked texels are not there.
+  bool intersect(const Ray& ray, Hit& hit, RayCounters& counters) const;
+  /// Nearest hit on one object, for primary rays; back faces of single-sided surfaces are not there.
+  bool intersectVisible(std::uint32_t object, const Ray& ray, Hit& hit, RayCounters& counters) const;
+  /// Nearest hit over all, for primary rays of the path tracer; back faces of single-sided surfaces are not
+  /// there.
+  bool intersectVisible(const Ray& ray, Hit& hit, RayCounters& counters) const;
+  /// The point of a non-diffuse object closest to `point`, as a hit (t = 0). False for an object without
+  /// area.
+  bool closestPoint(std::uint32_t object, const Vec3& point, Hit& hit) const;
+  /// 1 = free, 0 = blocked; between for alphaMode blend in the way. tFar must lie before the light.
+  float transmittance(const Ray& ray, RayCounters& counters) const;
+
+  const TriangleRecord& record(std::uint32_t triangle) const { return records_[triangle]; }
+  const TriangleShape& shape(std::uint32_t triangle) const { return shapes_[triangle]; }
+  const CompiledMaterial& material(std::uint32_t index) const { return materials_[index]; }
+  std::size_t triangleCount() const { return records_.size(); }
+  std::uint32_t firstTriangle(std::uint32_t object) const { return firstTriangle_[object]; }
+  bool closed(std::uint32_t object) const { return closed_[object]; }
+  /// ID mask value (1..idCount) to object index; throws core::Error for an unknown id.
+  std::uint32_t objectOfId(std::uint32_t id) const;
+  bool diffuse(std::uint32_t object) const { return scene_.objects[object].id == 0; }
+
+ private:
+  friend std::uint64_t replayRays(const World& world, const RayLog& log);
+  struct Embree;
+  void buildRecords();
+  void buildTrees();
+
+  const core::Scene& scene_;
+  int recursionDepth_ = 0;
+  std::vector<CompiledMaterial> materials_;
+  std::vector<TriangleRecord> records_;
+  std::vector<TriangleShape> shapes_;
+  std::vector<std::uint32_t> firstTriangle_;  ///< by object, one more at the end
+  std::vector<std::uint8_t> closed_;
+  std::vector<std::uint32_t> objectOfId_;
+  std::vector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves
+  int mapWidth_ = 0, mapHeight_ = 0, mapLayers_ = 0;
+  std::unique_ptr<Lights> lights_;
+  std::unique_ptr<Embree> embree_;
+};
+
+/// Where a ray leaving `position` towards `direction` starts: shifted along the geometric normal by the
+/// triangle's offset, a bound on the rounding of the hit point. The bound is relative to the triangle's
+/// coordinates, so scaling a scene by a power of two scales the offset exactly.
+inline Vec3 offsetOrigin(const Vec3& position, const Vec3& ngUnit, const Vec3& direction, float offset) {
+  return position + ngUnit * (glm::dot(ngUnit, direction) >= 0 ? offset : -offset);
+}
+
+}  // namespace saccade::raytrace
