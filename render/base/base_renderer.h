@@ -1,0 +1,58 @@
+// The base layer (Haber 2001, section 4.1, steps 1 to 3): illumination maps and object IDs, drawn with OpenGL
+// and read back.
+//
+// Target: one RGBA32F texture, RGB linear radiance, A the object ID as a float (exact to 2^24; design fact 4,
+// in place of the 8-bit stencil buffer), and 32-bit float depth. View's clip space points down, so that row 0
+// of what is read is the top row, and front faces are clockwise in GL's terms.
+//
+// Radiance: emission (front side, unless double-sided) + baseColor * texture * vertex colour
+//   * (1 - metallic) * (1 - transmission) * baseDiffuseFactor / pi * irradiance
+//   (core/scene/specular_albedo.h);
+// alphaMode blend: times coverage; mask: nothing where coverage < cutoff; unlit: baseColor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "core/camera.h"
+#include "core/corrective/messages.h"
+#include "core/maps.h"
+#include "core/scene/scene.h"
+#include "render/context/gl_context.h"
+
+namespace saccade::render {
+
+/// What the last frame took.
+struct DrawStats {
+  std::size_t objectsDrawn = 0;
+  std::size_t objectsCulled = 0;  ///< outside the frustum
+  std::size_t drawCalls = 0;
+  std::size_t triangles = 0;
+};
+
+/// GL thread only, the destructor included. Every function makes the context current.
+class BaseRenderer {
+ public:
+  /// Uploads geometry and textures. `scene` must be charted already (applyCharts) where maps will be shown;
+  /// it and the context must outlive the renderer. Throws core::Error: shader or upload failure.
+  BaseRenderer(GlContext& context, const core::Scene& scene);
+  ~BaseRenderer();
+
+  /// Shows another bake of the same charts; the maps are copied. Null: irradiance pi everywhere, so that a
+  /// white Lambertian surface has radiance 1.
+  void setMaps(const core::IlluminationMaps* maps);
+
+  /// Draws and reads back. The view's size may differ from frame to frame. Buffers of frames that nobody
+  /// holds any more are reused; extents are measured with `nMin` (core::measureExtents). Throws core::Error:
+  /// an empty size or one beyond the context's limits, GL errors, lost context.
+  std::shared_ptr<core::FrameSnapshot> render(const core::View& view, std::uint64_t epoch, int nMin);
+
+  const DrawStats& lastDraw() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace saccade::render
