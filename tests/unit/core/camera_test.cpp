@@ -1,0 +1,147 @@
+// View: one mapping for rasteriser and tracer.
+#include "core/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "core/error.h"
+
+namespace saccade::core {
+namespace {
+
+Bounds box(float half) {
+  Bounds b;
+  b.add(Vec3(-half));
+  b.add(Vec3(half));
+  return b;
+}
+
+Camera oblique() {
+  Camera c;
+  c.eye = {2, 1.5f, 3};
+  c.at = {-0.5f, 0.3f, -1};
+  c.fovYDegrees = 50;
+  return c;
+}
+
+float windowDepth(const View& view, const Vec3& p) {
+  const Vec4 clip = view.viewProjection() * Vec4(p, 1);
+  return 0.5f * (clip.z / clip.w + 1);
+}
+
+TEST(View, CentreLooksAlongTheLineOfSight) {
+  const View view(oblique(), 640, 480, box(5));
+  const Vec3 sight = glm::normalize(oblique().at - oblique().eye);
+  EXPECT_LT(glm::length(view.direction({320, 240}) - sight), 1e-6f);
+}
+
+TEST(View, RowZeroIsTheTopAndColumnsGoRight) {
+  Camera c;
+  c.eye = {0, 0, 0};
+  c.at = {0, 0, -1};
+  c.fovYDegrees = 90;
+  const View view(c, 200, 100, box(5));
+  const Vec3 corner = view.direction({0, 0});
+  EXPECT_NEAR(corner.y, 1, 1e-6);
+  EXPECT_NEAR(corner.x, -2, 1e-6);
+  EXPECT_NEAR(corner.z, -1, 1e-6);
+  const Vec3 centreOfFirstPixel = view.direction({0.5f, 0.5f});
+  EXPECT_NEAR(centreOfFirstPixel.y, 0.99, 1e-6);
+  EXPECT_NEAR(centreOfFirstPixel.x, -1.99, 1e-6);
+}
+
+TEST(View, ProjectUndoesUnproject) {
+  const View view(oblique(), 333, 217, box(6));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 pixel(unit(random) * 333, unit(random) * 217);
+    const float t = view.zNear() * 2 + unit(random) * 8;
+    const auto back = view.project(view.camera().eye + t * view.direction(pixel));
+    ASSERT_TRUE(back);
+    EXPECT_NEAR(back->pixel.x, pixel.x, 2e-3f);
+    EXPECT_NEAR(back->pixel.y, pixel.y, 2e-3f);
+    EXPECT_NEAR(back->viewDepth, t, 1e-5f * t + 1e-6f);
+  }
+}
+
+TEST(View, ClipMatrixAgreesWithProjectAndDepth) {
+  const View view(oblique(), 320, 200, box(4));
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> where(-4, 4);
+  int seen = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(where(random), where(random), where(random));
+    const auto projected = view.project(p);
+    if (!projected) continue;
+    const Vec4 clip = view.viewProjection() * Vec4(p, 1);
+    ASSERT_GT(clip.w, 0);
+    const float tolerance = 1e-2f / std::min(1.0f, projected->viewDepth);
+    EXPECT_NEAR((clip.x / clip.w + 1) * 160, projected->pixel.x, tolerance);
+    EXPECT_NEAR((clip.y / clip.w + 1) * 100, projected->pixel.y, tolerance);  // y down: no flip on read-back
+    const float depth = view.viewDepth(windowDepth(view, p));
+    EXPECT_NEAR(depth, projected->viewDepth, 2e-3f * projected->viewDepth * projected->viewDepth + 1e-4f);
+    ++seen;
+  }
+  EXPECT_GT(seen, 300);
+}
+
+TEST(View, DepthEndsAreThePlanes) {
+  const View view(oblique(), 64, 64, box(4));
+  EXPECT_NEAR(view.viewDepth(0), view.zNear(), 1e-6f * view.zNear());
+  EXPECT_NEAR(view.viewDepth(1), view.zFar(), 1e-6f * view.zFar());
+}
+
+TEST(View, PlanesEncloseTheSceneAtEveryScale) {
+  for (const float scale : {1e-3f, 1.0f, 30.0f, 1e4f}) {
+    Camera c = oblique();
+    c.eye *= scale;
+    c.at *= scale;
+    const Bounds scene = box(2 * scale);
+    const View view(c, 64, 64, scene);
+    EXPECT_LT(view.zNear(), 0.01f * scale);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p(corner & 1 ? scene.hi.x : scene.lo.x, corner & 2 ? scene.hi.y : scene.lo.y,
+                   corner & 4 ? scene.hi.z : scene.lo.z);
+      EXPECT_LT(glm::length(p - c.eye), view.zFar());
+    }
+  }
+}
+
+TEST(View, NothingBehindTheEyeOrAtInfinity) {
+  const View view(oblique(), 64, 64, box(4));
+  const Vec3 eye = oblique().eye, sight = glm::normalize(oblique().at - eye);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(view.project(eye));
+  EXPECT_FALSE(view.project(eye - sight));
+  EXPECT_FALSE(view.project(eye + 0.5f * view.zNear() * sight));
+  EXPECT_FALSE(view.project({nan, 0, 0}));
+  EXPECT_FALSE(view.project({kInfinity, 0, 0}));
+  EXPECT_TRUE(view.project(eye + sight));
+}
+
+TEST(View, DegenerateCamerasAreRefused) {
+  const auto refused = [](auto&& change) {
+    Camera c = oblique();
+    change(c);
+    EXPECT_THROW(View(c, 64, 64, box(1)), Error);
+  };
+  refused([](Camera& c) { c.at = c.eye; });
+  refused([](Camera& c) { c.up = c.at - c.eye; });
+  refused([](Camera& c) { c.up = Vec3(0); });
+  refused([](Camera& c) { c.eye.x = std::numeric_limits<float>::quiet_NaN(); });
+  refused([](Camera& c) { c.fovYDegrees = 0; });
+  refused([](Camera& c) { c.fovYDegrees = 180; });
+  refused([](Camera& c) { c.fovYDegrees = kInfinity; });
+  EXPECT_THROW(View(oblique(), 0, 64, box(1)), Error);
+  Camera wide = oblique();
+  wide.fovYDegrees = 179;
+  EXPECT_NO_THROW(View(wide, 64, 64, box(1)));
+  wide.fovYDegrees = 1;
+  EXPECT_NO_THROW(View(wide, 64, 64, Bounds{}));
+}
+
+}  // namespace
+}  // namespace saccade::core
