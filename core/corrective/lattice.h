@@ -69,4 +69,7 @@ LatticeCursor walkLattice(const PixelBox& box, LatticeCursor cursor, std::int64_
 /// The cursor before the first point of a level in a box.
 LatticeCursor beginLevel(const PixelBox& box, int level);
 
+/// Where walkLattice would end, without visiting: time grows with rows, not with points.
+LatticeCursor skipLattice(const PixelBox& box, LatticeCursor cursor, std::int64_t points);
+
 }  // namespace saccade::core

@@ -18,7 +18,7 @@ namespace saccade::core {
 class SnapshotMailbox {
  public:
   void put(AnalysisInput input);
-  /// Waits for a frame newer than the last one taken; nothing once closed.
+  /// Waits for a frame newer than the last one taken; nothing once closed. One consumer.
   std::optional<AnalysisInput> take();
   /// True while the consumer waits: "if the analyzer thread requests a new frame" (step 8).
   bool wanted() const;
@@ -40,11 +40,13 @@ class SnapshotMailbox {
 /// knows levels.
 class RegionQueue {
  public:
-  explicit RegionQueue(int jobSize) : jobSize_(jobSize) {}
+  explicit RegionQueue(int jobSize) : jobSize_(jobSize < 1 ? 1 : jobSize) {}
 
-  /// A new frame: every region starts again at its object's start level, with its last known priority.
+  /// A new frame: every region starts again at its object's start level, with its last known priority (1 for
+  /// an object that the analyzer has not seen yet). Sequence numbers start at 0 with every new epoch.
   void beginFrame(FramePtr frame);
-  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs. Regions keep their
+  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs, and [0] is ignored.
+  /// Values above 1 count as 1, others outside (0, 1] (NaN too) as kLowestPriority. Regions keep their
   /// progress; the reductions by level that they have suffered are applied again.
   void setPriorities(std::span<const float> byId);
   /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority,
@@ -53,23 +55,27 @@ class RegionQueue {
   std::optional<Job> tryPop();
   /// Like tryPop, but waits for work; nothing only when closed.
   std::optional<Job> pop();
+  /// Jobs that are left are not handed out; waiting tracers return.
   void close();
   /// No job left to hand out for the present frame.
   bool exhausted() const;
 
   static constexpr float kLevelReduction = 0.9f;
+  static constexpr float kLowestPriority = 1e-6f;
 
  private:
   struct Region {
-    std::uint32_t id;
-    float priority;
+    std::uint32_t id = 0;
+    float priority = 0;  ///< reduced by level
     LatticeCursor cursor;
-    std::int64_t
-        points;  ///< lattice points in the box per job, so that a job has about jobSize pixels on the mask
+    std::int64_t points = 1;  ///< lattice points in the box per job, about jobSize pixels on the mask
   };
+  /// Heap order: whether b goes before a.
+  static bool later(const Region& a, const Region& b);
+  float reducedPriority(const Region& region) const;
   std::optional<Job> popLocked();
 
-  const int jobSize_;
+  const int jobSize_;  ///< pixels, at least 1
   mutable std::mutex mutex_;
   std::condition_variable filled_;
   FramePtr frame_;
@@ -82,16 +88,19 @@ class RegionQueue {
 /// FIFO of sample batches (SQ in the paper), bounded: a full queue holds its tracer back.
 class SampleQueue {
  public:
-  explicit SampleQueue(std::size_t maxBatches = 4096) : maxBatches_(maxBatches) {}
+  explicit SampleQueue(std::size_t maxBatches = 4096) : maxBatches_(maxBatches < 1 ? 1 : maxBatches) {}
 
   /// Waits while full. False once closed (the batch is dropped).
   bool push(SampleBatch batch);
+  /// What was pushed before close can still be taken.
   std::optional<SampleBatch> tryPop();
   /// Waits until a batch is there or the deadline passes or the queue is closed.
   std::optional<SampleBatch> popUntil(std::chrono::steady_clock::time_point deadline);
   void close();
 
  private:
+  std::optional<SampleBatch> takeFront(std::unique_lock<std::mutex> lock);
+
   const std::size_t maxBatches_;
   std::mutex mutex_;
   std::condition_variable notEmpty_, notFull_;

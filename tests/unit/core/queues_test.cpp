@@ -1,0 +1,366 @@
+// The three channels: every pixel once, an order that is a function of frame and priorities, and threads that
+// always come home.
+#include "core/corrective/queues.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <tuple>
+
+#include "tests/unit/core/mask_frame.h"
+
+namespace saccade::core {
+namespace {
+
+using namespace std::chrono_literals;
+using tests::frameOf;
+using tests::randomMask;
+
+using JobKey = std::tuple<std::uint32_t, int, std::int64_t, std::int64_t, std::int64_t, bool, float>;
+JobKey keyOf(const Job& j) {
+  return {j.id, j.begin.level, j.begin.y, j.begin.x, j.points, j.omitCoarser, j.priority};
+}
+
+std::vector<Job> drain(RegionQueue& queue) {
+  std::vector<Job> jobs;
+  while (auto job = queue.tryPop()) jobs.push_back(std::move(*job));
+  return jobs;
+}
+
+std::vector<float> randomPriorities(std::uint32_t idCount, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<float> priorities(idCount + 1);
+  for (float& p : priorities) p = static_cast<float>(1 + random() % 1000) / 1000.0f;
+  return priorities;
+}
+
+/// Two squares of equal size whose lattices differ, and a third object of one pixel.
+FramePtr twoSquares() {
+  constexpr int kWidth = 150, kHeight = 64;
+  std::vector<std::uint32_t> ids(kWidth * kHeight, 0);
+  for (int y = 2; y < 62; ++y) {
+    for (int x = 0; x < 60; ++x) ids[y * kWidth + x] = 1, ids[y * kWidth + x + 80] = 2;
+  }
+  ids[kWidth - 1] = 3;
+  return frameOf(kWidth, kHeight, ids, 3);
+}
+
+TEST(RegionQueue, HandsOutEveryMaskPixelExactlyOnce) {
+  struct Case {
+    int width, height;
+    std::uint32_t ids;
+  };
+  for (const Case& c : {Case{1, 1, 1}, Case{2, 1, 1}, Case{3, 5, 3}, Case{64, 1, 5}, Case{97, 61, 12},
+                        Case{200, 150, 9}, Case{120, 80, 1000}}) {
+    for (int jobSize : {1, 7, 64, 100000}) {
+      const auto frame = frameOf(c.width, c.height, randomMask(c.width, c.height, c.ids, 3), c.ids);
+      std::vector<int> visits(frame->baseAndId.size(), 0);
+      RegionQueue queue(jobSize);
+      queue.setPriorities(randomPriorities(c.ids, 8));
+      queue.beginFrame(frame);
+      while (auto job = queue.tryPop()) {
+        forEachPixel(*job, [&](int x, int y) { ++visits[frame->index(x, y)]; });
+      }
+      EXPECT_TRUE(queue.exhausted());
+      for (std::size_t i = 0; i < visits.size(); ++i) {
+        ASSERT_EQ(visits[i], frame->baseAndId[i].w != 0 ? 1 : 0)
+            << c.width << 'x' << c.height << " job " << jobSize;
+      }
+    }
+  }
+}
+
+TEST(RegionQueue, LevelsOfAnObjectComeInOrderFromItsStartLevel) {
+  const auto frame = frameOf(200, 150, randomMask(200, 150, 6, 4), 6);
+  RegionQueue queue(32);
+  queue.beginFrame(frame);
+  std::vector<int> level(7, 0);
+  for (const Job& job : drain(queue)) {
+    const int start = frame->extents[job.id].startLevel;
+    if (level[job.id] == 0) {
+      EXPECT_EQ(job.begin.level, start);
+    }
+    EXPECT_GE(job.begin.level, level[job.id]);
+    EXPECT_LE(job.begin.level, std::max(level[job.id], start) + 1);
+    EXPECT_EQ(job.omitCoarser, job.begin.level > start);
+    level[job.id] = job.begin.level;
+  }
+  for (int id = 1; id <= 6; ++id) EXPECT_EQ(level[id], Lattice::kMaxLevel);
+}
+
+TEST(RegionQueue, AJobHasAboutJobSizePixels) {
+  // A ring: the mask fills a small part of its box.
+  constexpr int kSize = 200, kJob = 64;
+  std::vector<std::uint32_t> ids(kSize * kSize, 0);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const double r = std::hypot(x - 100, y - 100);
+      ids[y * kSize + x] = r > 85 && r < 95;
+    }
+  }
+  const auto frame = frameOf(kSize, kSize, ids, 1);
+  RegionQueue queue(kJob);
+  queue.beginFrame(frame);
+  std::size_t pixels = 0, jobs = 0;
+  for (const Job& job : drain(queue)) {
+    if (job.begin.level < Lattice::kMaxLevel) continue;
+    ++jobs;
+    forEachPixel(job, [&](int, int) { ++pixels; });
+  }
+  // The last level omits a fifth of its points, which still count.
+  EXPECT_NEAR(static_cast<double>(pixels) / static_cast<double>(jobs), 0.8 * kJob, 0.05 * kJob);
+}
+
+TEST(RegionQueue, PrioritiesDecideAndTiesGoToTheSmallerId) {
+  const auto frame = frameOf(120, 80, randomMask(120, 80, 8, 2), 8);
+  RegionQueue queue(16);
+  queue.setPriorities(randomPriorities(8, 77));
+  queue.beginFrame(frame);
+  // Priorities only fall: no region is ever raised, so the order handed out is non-increasing.
+  const auto jobs = drain(queue);
+  ASSERT_GT(jobs.size(), 50u);
+  for (std::size_t i = 1; i < jobs.size(); ++i) {
+    EXPECT_LE(jobs[i].priority, jobs[i - 1].priority);
+    if (jobs[i].priority == jobs[i - 1].priority) {
+      EXPECT_GE(jobs[i].id, jobs[i - 1].id);
+    }
+    EXPECT_EQ(jobs[i].sequence, i);
+  }
+}
+
+TEST(RegionQueue, TenPercentRuleMakesEqualObjectsAlternateByLevel) {
+  RegionQueue queue(32);
+  queue.setPriorities(std::vector<float>{0, 0.8f, 0.8f, 0.01f});
+  queue.beginFrame(twoSquares());
+  std::vector<std::pair<int, std::uint32_t>> runs;
+  for (const Job& job : drain(queue)) {
+    if (job.id == 3) continue;
+    const std::pair<int, std::uint32_t> run{job.begin.level, job.id};
+    if (runs.empty() || runs.back() != run) runs.push_back(run);
+    EXPECT_FLOAT_EQ(job.priority, 0.8f * std::pow(0.9f, static_cast<float>(job.begin.level - 4)));
+  }
+  const std::vector<std::pair<int, std::uint32_t>> expected{{4, 1}, {4, 2}, {5, 1}, {5, 2},
+                                                            {6, 1}, {6, 2}, {7, 1}, {7, 2}};
+  EXPECT_EQ(runs, expected);
+}
+
+TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
+  const auto frame = twoSquares();
+  RegionQueue changed(32), untouched(32);
+  for (RegionQueue* q : {&changed, &untouched}) {
+    q->setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});
+    q->beginFrame(frame);
+  }
+  std::vector<JobKey> a, b;
+  while (auto job = changed.tryPop()) {
+    a.push_back(keyOf(*job));
+    changed.setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});  // the same ones: nothing may change
+  }
+  for (const Job& job : drain(untouched)) b.push_back(keyOf(job));
+  EXPECT_EQ(a, b);
+
+  RegionQueue swapped(32);
+  swapped.setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});
+  swapped.beginFrame(frame);
+  while (swapped.tryPop()->begin.level < 5) {
+  }
+  swapped.setPriorities(std::vector<float>{0, 0.5f, 1.0f});  // 3 keeps its own
+  const Job next = *swapped.tryPop();
+  EXPECT_EQ(next.id, 2u);
+  EXPECT_FLOAT_EQ(next.priority, 1.0f);
+  float ofFirst = 0;
+  int firstLevel = 0;
+  for (const Job& job : drain(swapped)) {
+    if (job.id != 1 || firstLevel != 0) continue;
+    ofFirst = job.priority, firstLevel = job.begin.level;
+  }
+  EXPECT_EQ(firstLevel, 5);
+  EXPECT_FLOAT_EQ(ofFirst, 0.5f * 0.9f);
+}
+
+TEST(RegionQueue, StrangePrioritiesAreTamed) {
+  RegionQueue queue(1000);
+  queue.setPriorities(std::vector<float>{0, std::numeric_limits<float>::quiet_NaN(), -3, 70});
+  queue.beginFrame(twoSquares());
+  const auto jobs = drain(queue);
+  EXPECT_EQ(jobs.front().id, 3u);
+  EXPECT_EQ(jobs.front().priority, 1.0f);
+  EXPECT_EQ(jobs[1].id, 1u);
+  EXPECT_EQ(jobs[1].priority, RegionQueue::kLowestPriority);
+}
+
+TEST(RegionQueue, NewFrameStartsAgainAndNumbersByEpoch) {
+  const auto ids = randomMask(50, 40, 3, 6);
+  RegionQueue queue(16);
+  queue.beginFrame(frameOf(50, 40, ids, 3, 10, 1));
+  std::vector<JobKey> first, second;
+  for (int i = 0; i < 5; ++i) first.push_back(keyOf(*queue.tryPop()));
+  queue.beginFrame(frameOf(50, 40, ids, 3, 10, 1));
+  EXPECT_EQ(queue.tryPop()->sequence, 5u);
+  queue.beginFrame(frameOf(50, 40, ids, 3, 10, 2));
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const Job job = *queue.tryPop();
+    EXPECT_EQ(job.sequence, i);
+    EXPECT_EQ(job.frame->epoch, 2u);
+    second.push_back(keyOf(job));
+  }
+  EXPECT_EQ(first, second);
+}
+
+TEST(RegionQueue, OrderDoesNotDependOnTheNumberOfPoppers) {
+  const auto frame = frameOf(200, 150, randomMask(200, 150, 40, 11), 40);
+  const auto priorities = randomPriorities(40, 12);
+  const auto inSequence = [&](int threads) {
+    RegionQueue queue(16);
+    queue.setPriorities(priorities);
+    queue.beginFrame(frame);
+    std::vector<std::vector<Job>> taken(static_cast<std::size_t>(threads));
+    {
+      std::vector<std::jthread> poppers;
+      for (auto& mine : taken) poppers.emplace_back([&] { mine = drain(queue); });
+    }
+    std::vector<Job> jobs;
+    for (auto& mine : taken) jobs.insert(jobs.end(), mine.begin(), mine.end());
+    std::sort(jobs.begin(), jobs.end(), [](const Job& a, const Job& b) { return a.sequence < b.sequence; });
+    std::vector<JobKey> keys;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      EXPECT_EQ(jobs[i].sequence, i);
+      keys.push_back(keyOf(jobs[i]));
+    }
+    return keys;
+  };
+  const auto inlineOrder = inSequence(1);
+  EXPECT_GT(inlineOrder.size(), 500u);
+  for (int threads : {2, 3, 8}) EXPECT_EQ(inSequence(threads), inlineOrder) << threads;
+}
+
+TEST(RegionQueue, CloseWakesWaitersAndStopsWork) {
+  RegionQueue queue(16);
+  std::atomic<int> home = 0;
+  {
+    std::vector<std::jthread> waiters;
+    for (int i = 0; i < 4; ++i) {
+      waiters.emplace_back([&] {
+        EXPECT_FALSE(queue.pop());
+        ++home;
+      });
+    }
+    queue.close();
+  }
+  EXPECT_EQ(home, 4);
+  queue.beginFrame(twoSquares());
+  EXPECT_FALSE(queue.tryPop());
+  EXPECT_FALSE(queue.pop());
+}
+
+TEST(RegionQueue, PopWaitsForAFrame) {
+  RegionQueue queue(1 << 20);
+  std::uint32_t id = 0;
+  {
+    std::jthread waiter([&] { id = queue.pop()->id; });
+    queue.beginFrame(twoSquares());
+  }
+  EXPECT_EQ(id, 1u);
+  EXPECT_FALSE(queue.exhausted());
+}
+
+TEST(SnapshotMailbox, LatestWinsAndIsTakenOnce) {
+  SnapshotMailbox box;
+  EXPECT_FALSE(box.wanted());
+  const auto ids = std::vector<std::uint32_t>{1};
+  for (std::uint64_t epoch : {1, 2, 3}) box.put({frameOf(1, 1, ids, 1, 10, epoch), nullptr});
+  EXPECT_EQ(box.take()->frame->epoch, 3u);
+  std::uint64_t next = 0;
+  {
+    std::jthread analyzer([&] { next = box.take()->frame->epoch; });
+    while (!box.wanted()) std::this_thread::yield();
+    box.put({frameOf(1, 1, ids, 1, 10, 4), nullptr});
+  }
+  EXPECT_EQ(next, 4u);
+  EXPECT_FALSE(box.wanted());
+}
+
+TEST(SnapshotMailbox, CloseWakesTheAnalyzer) {
+  SnapshotMailbox box;
+  {
+    std::jthread analyzer([&] { EXPECT_FALSE(box.take()); });
+    while (!box.wanted()) std::this_thread::yield();
+    box.close();
+  }
+  EXPECT_FALSE(box.wanted());
+  box.put({frameOf(1, 1, {1}, 1), nullptr});
+  EXPECT_FALSE(box.take());
+}
+
+SampleBatch batchOf(std::uint64_t sequence) {
+  SampleBatch batch;
+  batch.sequence = sequence;
+  return batch;
+}
+
+TEST(SampleQueue, FirstInFirstOut) {
+  SampleQueue queue;
+  EXPECT_FALSE(queue.tryPop());
+  for (std::uint64_t i = 0; i < 5; ++i) EXPECT_TRUE(queue.push(batchOf(i)));
+  for (std::uint64_t i = 0; i < 4; ++i) EXPECT_EQ(queue.tryPop()->sequence, i);
+  EXPECT_EQ(queue.popUntil(std::chrono::steady_clock::now() + 1h)->sequence, 4u);
+  EXPECT_FALSE(queue.popUntil(std::chrono::steady_clock::now() + 1ms));
+}
+
+TEST(SampleQueue, AFullQueueHoldsTheTracerBackUntilThereIsRoom) {
+  SampleQueue queue(2);
+  std::atomic<int> pushed = 0;
+  std::jthread tracer([&] {
+    for (std::uint64_t i = 0; i < 5; ++i) {
+      ASSERT_TRUE(queue.push(batchOf(i)));
+      ++pushed;
+    }
+  });
+  while (pushed < 2) std::this_thread::yield();
+  std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(pushed, 2);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(queue.popUntil(std::chrono::steady_clock::now() + 1h)->sequence, i);
+    EXPECT_LE(pushed, static_cast<int>(i) + 3);
+  }
+}
+
+TEST(SampleQueue, CloseFreesBothSidesAndKeepsWhatWasPushed) {
+  SampleQueue queue(1);
+  EXPECT_TRUE(queue.push(batchOf(7)));
+  {
+    std::jthread tracer([&] { EXPECT_FALSE(queue.push(batchOf(8))); });
+    queue.close();
+  }
+  EXPECT_EQ(queue.tryPop()->sequence, 7u);
+  EXPECT_FALSE(queue.popUntil(std::chrono::steady_clock::now() + 1h));
+}
+
+TEST(SampleQueue, ManyTracersLoseNothing) {
+  constexpr int kTracers = 6;
+  constexpr std::uint64_t kEach = 500;
+  SampleQueue queue(8);
+  std::vector<int> seen(kTracers * kEach, 0);
+  std::vector<std::jthread> tracers;
+  for (std::uint64_t t = 0; t < kTracers; ++t) {
+    tracers.emplace_back([&queue, t] {
+      for (std::uint64_t i = 0; i < kEach; ++i) ASSERT_TRUE(queue.push(batchOf(t * kEach + i)));
+    });
+  }
+  std::vector<std::uint64_t> last(kTracers, 0);
+  for (std::uint64_t i = 0; i < kTracers * kEach; ++i) {
+    const std::uint64_t sequence = queue.popUntil(std::chrono::steady_clock::now() + 1h)->sequence;
+    ++seen[sequence];
+    // One tracer's batches stay in order.
+    EXPECT_GE(sequence, last[sequence / kEach]);
+    last[sequence / kEach] = sequence;
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(seen.size()));
+}
+
+}  // namespace
+}  // namespace saccade::core
