@@ -1,0 +1,92 @@
+#include "raytrace/bake/baker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "raytrace/bake/density.h"
+#include "raytrace/bake/direct.h"
+#include "raytrace/bake/gutters.h"
+#include "raytrace/bake/particles.h"
+#include "raytrace/bake/texel_map.h"
+
+namespace saccade::raytrace {
+namespace {
+
+constexpr float kLargestHalf = 65504;
+
+struct Preset {
+  const char* name;
+  std::uint64_t photons;
+  int directSamples;
+};
+// About 1, 10 and 60 seconds for a Cornell room on two cores.
+constexpr Preset kPresets[] = {{"preview", 1 << 18, 4}, {"medium", 1 << 22, 16}, {"high", 1 << 25, 64}};
+
+const Preset& presetOf(const std::string& quality) {
+  for (const Preset& p : kPresets) {
+    if (quality == p.name) return p;
+  }
+  throw core::UsageError("unknown quality '" + quality + "': use preview, medium or high");
+}
+
+std::uint16_t toHalf(float value) {
+  return glm::packHalf1x16(std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargestHalf));
+}
+
+/// One layer's irradiance, without gutters.
+std::vector<Vec3> bakeLayer(const World& world, const TexelMap& texels, const ParticleState& particles,
+                            int layer, const Preset& preset, const BakeOptions& options,
+                            const core::Progress& progress, ProgressShare share) {
+  const double middle = share.from + 0.8 * (share.to - share.from);
+  std::vector<Vec3> irradiance(texels.texelCount(), Vec3(0));
+  DirectOptions direct;
+  direct.samples = preset.directSamples;
+  direct.seed = options.seed;
+  direct.threads = options.threads;
+  directIrradiance(world, texels, layer, direct, progress, {share.from, middle}, irradiance);
+  DensityOptions density;
+  density.threads = options.threads;
+  std::vector<DensityEstimate> indirect(texels.texelCount());
+  estimateDensity(texels, particles.flux, layer, wattsPerWeight(world, particles.emitted), density, progress,
+                  {middle, share.to}, indirect);
+  for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] += indirect[i].irradiance;
+  return irradiance;
+}
+
+}  // namespace
+
+std::uint64_t photonsOf(const std::string& quality) { return presetOf(quality).photons; }
+
+core::IlluminationMaps bakeMaps(const World& world, std::vector<core::ObjectCharts> charts, int atlasSize,
+                                const BakeOptions& options, const core::Progress& progress) {
+  const Preset& preset = presetOf(options.quality);
+  const TexelMap texels(world.scene(), atlasSize);
+  core::IlluminationMaps maps;
+  maps.width = maps.height = atlasSize;
+  maps.layers = texels.anyDoubleSided() ? 2 : 1;
+  maps.charts = std::move(charts);
+  maps.quality = options.quality;
+  maps.photons = options.photons ? options.photons : preset.photons;
+  maps.texels.resize(texels.texelCount() * 3 * static_cast<std::size_t>(maps.layers));
+
+  constexpr double kParticleShare = 0.6;  // of the time
+  ParticleState particles(texels.texelCount(), maps.layers);
+  traceParticles(world, texels, maps.photons, options.seed, options.threads, progress, {0, kParticleShare},
+                 particles);
+  for (int layer = 0; layer < maps.layers; ++layer) {
+    const double step = (1 - kParticleShare) / maps.layers, from = kParticleShare + layer * step;
+    std::vector<Vec3> irradiance =
+        bakeLayer(world, texels, particles, layer, preset, options, progress, {from, from + step});
+    fillGutters(texels, irradiance);
+    std::uint16_t* out = maps.texels.data() + static_cast<std::size_t>(layer) * texels.texelCount() * 3;
+    for (const Vec3& e : irradiance) {
+      for (int c = 0; c < 3; ++c) *out++ = toHalf(e[c]);
+    }
+  }
+  return maps;
+}
+
+}  // namespace saccade::raytrace

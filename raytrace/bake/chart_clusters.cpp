@@ -1,0 +1,326 @@
+#include "raytrace/bake/chart_clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "raytrace/bake/cell_clip.h"
+
+namespace saccade::raytrace {
+namespace {
+
+constexpr double kConeCosine = 0.766;      // 40 degrees from the chart's axis
+constexpr double kDihedralCosine = 0.643;  // 50 degrees: a sharper edge ends a chart
+constexpr float kCreaseCosine = 0.906f;    // 25 degrees between shading normals at an edge's ends: a crease
+constexpr double kHollowFill = 0.35;       // charts that fill less of their rectangle are halved
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+struct PositionHash {
+  std::size_t operator()(const std::array<std::uint32_t, 3>& k) const {
+    std::uint64_t h = k[0] * 0x9e3779b97f4a7c15ull;
+    h = (h ^ (h >> 29) ^ k[1]) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 32) ^ k[2]) * 0x94d049bb133111ebull;
+    return static_cast<std::size_t>(h ^ (h >> 31));
+  }
+};
+
+/// What clustering knows of a mesh's triangles.
+class Topology {
+ public:
+  explicit Topology(const core::Mesh& mesh) : mesh_(mesh), count_(mesh.triangleCount()) {
+    weld();
+    measure();
+    connect();
+  }
+
+  std::size_t count() const { return count_; }
+  const core::Mesh& mesh() const { return mesh_; }
+  const glm::dvec3& normal(std::uint32_t t) const { return normal_[t]; }  ///< unit, zero if degenerate
+  double area(std::uint32_t t) const { return area_[t]; }                 ///< m^2, zero if degenerate
+  bool finite(std::uint32_t t) const { return finite_[t] != 0; }
+  std::uint32_t neighbour(std::uint32_t t, int edge) const { return neighbour_[3 * t + edge]; }
+  const core::Vec3& position(std::uint32_t t, int corner) const {
+    return mesh_.positions[mesh_.indices[3 * t + corner]];
+  }
+  glm::dvec3 centroid(std::uint32_t t) const {
+    return (glm::dvec3(position(t, 0)) + glm::dvec3(position(t, 1)) + glm::dvec3(position(t, 2))) / 3.0;
+  }
+
+ private:
+  void weld() {
+    std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, PositionHash> seen;
+    seen.reserve(mesh_.positions.size());
+    welded_.resize(mesh_.positions.size());
+    for (std::size_t i = 0; i < welded_.size(); ++i) {
+      const core::Vec3 p = mesh_.positions[i] + 0.0f;  // -0 becomes +0
+      const std::array<std::uint32_t, 3> key{std::bit_cast<std::uint32_t>(p.x),
+                                             std::bit_cast<std::uint32_t>(p.y),
+                                             std::bit_cast<std::uint32_t>(p.z)};
+      welded_[i] = seen.try_emplace(key, static_cast<std::uint32_t>(i)).first->second;
+    }
+  }
+
+  void measure() {
+    normal_.assign(count_, glm::dvec3(0));
+    area_.assign(count_, 0);
+    finite_.assign(count_, 0);
+    for (std::uint32_t t = 0; t < count_; ++t) {
+      const glm::dvec3 a = position(t, 0), e = glm::dvec3(position(t, 1)) - a,
+                       f = glm::dvec3(position(t, 2)) - a;
+      const glm::dvec3 n = glm::cross(e, f);
+      const double length = glm::length(n);
+      finite_[t] = std::isfinite(length) && std::isfinite(glm::dot(a, a));
+      const double longest = std::max({glm::dot(e, e), glm::dot(f, f), glm::dot(e - f, e - f)});
+      if (!finite_[t] || !(length > 1e-9 * longest)) continue;
+      normal_[t] = n / length;
+      area_[t] = 0.5 * length;
+    }
+  }
+
+  struct Edge {
+    std::uint32_t lo, hi, corner;  // corner = 3 * triangle + edge
+    bool forward;                  // runs from lo to hi in its triangle
+  };
+
+  void connect() {
+    std::vector<Edge> edges;
+    edges.reserve(3 * count_);
+    for (std::uint32_t c = 0; c < 3 * count_; ++c) {
+      const std::uint32_t a = welded_[mesh_.indices[c]], b = welded_[mesh_.indices[next(c)]];
+      if (a != b && finite_[c / 3]) edges.push_back({std::min(a, b), std::max(a, b), c, a < b});
+    }
+    std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+      return x.lo != y.lo ? x.lo < y.lo : x.hi != y.hi ? x.hi < y.hi : x.corner < y.corner;
+    });
+    neighbour_.assign(3 * count_, kNone);
+    for (std::size_t i = 0, j; i < edges.size(); i = j) {
+      for (j = i + 1; j < edges.size() && edges[j].lo == edges[i].lo && edges[j].hi == edges[i].hi;) ++j;
+      // Only an edge of exactly two triangles, wound alike, is crossed: then they lie on its two sides.
+      if (j - i == 2 && edges[i].forward != edges[i + 1].forward && smooth(edges[i], edges[i + 1])) {
+        neighbour_[edges[i].corner] = edges[i + 1].corner / 3;
+        neighbour_[edges[i + 1].corner] = edges[i].corner / 3;
+      }
+    }
+  }
+
+  bool smooth(const Edge& a, const Edge& b) const {
+    const std::uint32_t s = a.corner / 3, t = b.corner / 3;
+    if (area_[s] == 0 || area_[t] == 0) return true;
+    if (glm::dot(normal_[s], normal_[t]) < kDihedralCosine) return false;
+    if (mesh_.normals.empty()) return true;
+    const auto shading = [&](std::uint32_t corner) { return mesh_.normals[mesh_.indices[corner]]; };
+    return glm::dot(shading(a.corner), shading(next(b.corner))) >= kCreaseCosine &&
+           glm::dot(shading(next(a.corner)), shading(b.corner)) >= kCreaseCosine;
+  }
+
+  static std::uint32_t next(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+  const core::Mesh& mesh_;
+  std::size_t count_;
+  std::vector<std::uint32_t> welded_;  ///< vertex -> first vertex at the same place
+  std::vector<glm::dvec3> normal_;
+  std::vector<double> area_;
+  std::vector<char> finite_;
+  std::vector<std::uint32_t> neighbour_;  ///< across edge e of triangle t: [3 t + e], kNone at borders
+};
+
+/// Splits a set of triangles into its connected parts. `mark` is scratch, one entry a triangle, all kNone
+/// before and after.
+std::vector<std::vector<std::uint32_t>> connectedParts(const Topology& mesh,
+                                                       const std::vector<std::uint32_t>& set,
+                                                       std::vector<std::uint32_t>& mark) {
+  for (const std::uint32_t t : set) mark[t] = 0;  // 0 = in the set, not yet reached
+  std::vector<std::vector<std::uint32_t>> parts;
+  for (const std::uint32_t seed : set) {
+    if (mark[seed] != 0) continue;
+    std::vector<std::uint32_t> part{seed};
+    mark[seed] = 1;
+    for (std::size_t head = 0; head < part.size(); ++head) {
+      for (int e = 0; e < 3; ++e) {
+        const std::uint32_t n = mesh.neighbour(part[head], e);
+        if (n == kNone || mark[n] != 0) continue;
+        mark[n] = 1;
+        part.push_back(n);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  for (const std::uint32_t t : set) mark[t] = kNone;
+  return parts;
+}
+
+/// Grows charts from the largest triangles outwards.
+class Grower {
+ public:
+  explicit Grower(const Topology& mesh) : mesh_(mesh), taken_(mesh.count(), 0) {}
+
+  std::vector<Chart> grow() {
+    std::vector<std::uint32_t> seeds(mesh_.count());
+    std::iota(seeds.begin(), seeds.end(), 0u);
+    std::stable_sort(seeds.begin(), seeds.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return mesh_.area(a) > mesh_.area(b); });
+    std::vector<Chart> charts;
+    for (const std::uint32_t seed : seeds) {
+      if (!taken_[seed]) charts.push_back(growFrom(seed));
+    }
+    return charts;
+  }
+
+ private:
+  Chart growFrom(std::uint32_t seed) {
+    Chart chart;
+    const glm::dvec3 axis = mesh_.area(seed) > 0 ? mesh_.normal(seed) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 helper = std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    chart.u = glm::normalize(glm::cross(helper, axis));
+    chart.v = glm::cross(axis, chart.u);
+    chart.origin = mesh_.finite(seed) ? mesh_.centroid(seed) : glm::dvec3(0);
+    chart.triangles.push_back(seed);
+    taken_[seed] = 1;
+    for (std::size_t head = 0; head < chart.triangles.size(); ++head) {
+      for (int e = 0; e < 3; ++e) {
+        const std::uint32_t n = mesh_.neighbour(chart.triangles[head], e);
+        if (n == kNone || taken_[n]) continue;
+        if (mesh_.area(n) > 0 && glm::dot(mesh_.normal(n), axis) < kConeCosine) continue;
+        taken_[n] = 1;
+        chart.triangles.push_back(n);
+      }
+    }
+    std::sort(chart.triangles.begin(), chart.triangles.end());
+    return chart;
+  }
+
+  const Topology& mesh_;
+  std::vector<char> taken_;
+};
+
+/// Turns the chart's plane so that its bounding rectangle is small, longer side along u.
+void fitRectangle(const Topology& mesh, Chart& chart) {
+  std::vector<glm::dvec2> points;
+  glm::dvec2 longest(1, 0);
+  for (const std::uint32_t t : chart.triangles) {
+    if (!mesh.finite(t)) continue;
+    glm::dvec2 p[3];
+    for (int c = 0; c < 3; ++c) points.push_back(p[c] = chart.project(mesh.position(t, c)));
+    for (int c = 0; c < 3; ++c) {
+      const glm::dvec2 e = p[(c + 1) % 3] - p[c];
+      if (glm::dot(e, e) > glm::dot(longest, longest) || (t == chart.triangles[0] && c == 0)) longest = e;
+    }
+  }
+  constexpr int kAngles = 9;  // the longest edge's own direction first, then every 10 degrees
+  const double start = std::atan2(longest.y, longest.x);
+  double bestArea = 0;
+  glm::dvec2 best(1, 0);
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = start + i * (0.5 * core::kPi / kAngles);
+    const glm::dvec2 x(std::cos(angle), std::sin(angle)), y(-x.y, x.x);
+    glm::dvec2 lo(0), hi(0);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const glm::dvec2 q(glm::dot(points[k], x), glm::dot(points[k], y));
+      lo = k ? glm::min(lo, q) : q;
+      hi = k ? glm::max(hi, q) : q;
+    }
+    const glm::dvec2 e = hi - lo;
+    if (i > 0 && !(e.x * e.y < 0.98 * bestArea)) continue;
+    bestArea = e.x * e.y;
+    best = x;
+    if (e.y > e.x) best = y;
+  }
+  const glm::dvec3 u = best.x * chart.u + best.y * chart.v;
+  chart.v = -best.y * chart.u + best.x * chart.v;
+  chart.u = u;
+  bool first = true;
+  for (const std::uint32_t t : chart.triangles) {
+    for (int c = 0; c < 3 && mesh.finite(t); ++c) {
+      const glm::dvec2 q = chart.project(mesh.position(t, c));
+      chart.lo = first ? q : glm::min(chart.lo, q);
+      chart.hi = first ? q : glm::max(chart.hi, q);
+      first = false;
+    }
+  }
+}
+
+/// Whether the projection covers some place twice (a spiral ramp): a cell of a grid is filled beyond 1.
+bool overlapsItself(const Topology& mesh, const Chart& chart) {
+  if (chart.triangles.size() < 4) return false;  // needs at least a fan around a point
+  const glm::dvec2 extent = chart.hi - chart.lo;
+  if (!(extent.x > 0) || !(extent.y > 0)) return false;
+  const double side = std::clamp(2.0 * std::sqrt(static_cast<double>(chart.triangles.size())), 8.0, 256.0);
+  const int width = static_cast<int>(side), height = static_cast<int>(side);
+  const glm::dvec2 scale(width / extent.x, height / extent.y);
+  std::vector<double> filled(static_cast<std::size_t>(width) * height, 0.0);
+  constexpr double kFull = 1.01;
+  bool overlap = false;
+  for (const std::uint32_t t : chart.triangles) {
+    if (mesh.area(t) == 0) continue;
+    glm::dvec2 p[3];
+    for (int c = 0; c < 3; ++c) p[c] = (chart.project(mesh.position(t, c)) - chart.lo) * scale;
+    forEachCell(p[0], p[1], p[2], width, height, [&](int x, int y, double area) {
+      overlap |= (filled[static_cast<std::size_t>(y) * width + x] += area) > kFull;
+    });
+    if (overlap) return true;
+  }
+  return false;
+}
+
+double projectedArea(const Topology& mesh, const Chart& chart) {
+  const glm::dvec3 axis = glm::cross(chart.u, chart.v);
+  double sum = 0;
+  for (const std::uint32_t t : chart.triangles) sum += mesh.area(t) * glm::dot(mesh.normal(t), axis);
+  return sum;
+}
+
+/// Cuts a chart in two by the triangles' order along a direction, and each half into connected parts.
+std::vector<Chart> halve(const Topology& mesh, const Chart& chart, const glm::dvec3& direction,
+                         std::vector<std::uint32_t>& mark) {
+  std::vector<std::uint32_t> order = chart.triangles;
+  const auto key = [&](std::uint32_t t) {
+    return mesh.finite(t) ? glm::dot(mesh.centroid(t) - chart.origin, direction) : 0.0;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  std::vector<Chart> out;
+  for (std::vector<std::uint32_t> half :
+       {std::vector<std::uint32_t>(order.begin(), middle), std::vector<std::uint32_t>(middle, order.end())}) {
+    std::sort(half.begin(), half.end());
+    for (auto& part : connectedParts(mesh, half, mark)) {
+      Chart c = chart;
+      c.triangles = std::move(part);
+      out.push_back(std::move(c));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Chart> clusterMesh(const core::Mesh& mesh) {
+  const Topology topology(mesh);
+  double total = 0;
+  for (std::uint32_t t = 0; t < topology.count(); ++t) total += topology.area(t);
+  const double worthHalving = total / 256;  // hollow charts smaller than this waste little
+  std::vector<Chart> pending = Grower(topology).grow(), done;
+  std::vector<std::uint32_t> mark(topology.count(), kNone);
+  for (std::size_t i = 0; i < pending.size(); ++i) {
+    Chart chart = std::move(pending[i]);
+    fitRectangle(topology, chart);
+    const glm::dvec2 extent = chart.hi - chart.lo;
+    const double rectangle = extent.x * extent.y;
+    const bool hollow = chart.triangles.size() > 1 && rectangle > worthHalving &&
+                        projectedArea(topology, chart) < kHollowFill * rectangle;
+    if (hollow || overlapsItself(topology, chart)) {
+      // Turns of a spiral lie above one another: cut by height. A hollow chart is cut across its length.
+      const glm::dvec3 direction = hollow ? chart.u : glm::cross(chart.u, chart.v);
+      for (Chart& part : halve(topology, chart, direction, mark)) pending.push_back(std::move(part));
+    } else {
+      done.push_back(std::move(chart));
+    }
+  }
+  return done;
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,36 @@
+// Cutting a scene into charts and packing them into one square atlas for the illumination maps (Haber 2001,
+// section 4: illumination maps stored as textures).
+//
+// A chart is a connected set of triangles whose normals lie within 40 degrees of its axis, projected along
+// the axis, so areas shrink by at most a quarter. Charts are stretched to whole texels (a chart's rectangle
+// side is rounded), so that straight walls end at a texel's border and no texel is covered by a sliver only.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/maps.h"
+#include "core/scene/plan.h"
+#include "core/scene/scene.h"
+
+namespace saccade::raytrace {
+
+struct ChartAtlas {
+  std::vector<core::ObjectCharts> charts;  ///< one per object; hand them to core::applyCharts
+  int size = 0;                            ///< atlas side in texels
+  float texelMetres = 0;                   ///< side of a texel on a surface parallel to its chart
+  std::size_t chartCount = 0;
+};
+
+/// Whether the base layer ever shows irradiance on this material: it has a Lambert part. Metals, clear glass,
+/// black and unlit materials have none; their objects share one texel.
+bool showsIrradiance(const core::Material& material);
+
+/// Charts for every object of a loaded, not yet charted scene; uniform texel density from the total surface
+/// area, not finer than plan.texelSizeMetres, in an atlas of plan.lightmapSize (0: 1024) texels. Between
+/// charts lie two empty texels. The atlas doubles, up to maxAtlasSize, when its charts are so many that they
+/// would cost more than half of the density. Deterministic; about a microsecond per triangle and core. Throws
+/// core::Error when even one texel a chart does not fit maxAtlasSize.
+ChartAtlas makeCharts(const core::Scene& scene, const core::Plan& plan, int maxAtlasSize);
+
+}  // namespace saccade::raytrace

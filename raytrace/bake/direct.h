@@ -1,0 +1,29 @@
+// Direct irradiance per texel: shadow rays from points spread over the texel's covered area.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/progress.h"
+#include "raytrace/bake/parallel.h"
+#include "raytrace/bake/texel_map.h"
+#include "raytrace/world.h"
+
+namespace saccade::raytrace {
+
+struct DirectOptions {
+  int samples = 16;    ///< per texel and side, a power of two (the points are a (0, 2)-sequence)
+  int refinement = 4;  ///< times as many samples where the first ones disagree (penumbrae, shadow edges)
+  float relativeError = 0.02f;  ///< standard error of the mean above which a texel is refined
+  std::uint32_t seed = 1;
+  int threads = 0;  ///< 0 = inline
+};
+
+/// irradiance[texel] = mean over the texel's covered area of the light that arrives straight from lights
+/// (through alpha-blended surfaces too) at its front (layer 0) or back (layer 1, double-sided charts only),
+/// W/m^2, against the interpolated normal. Texels without surface are left alone. Same bits for any number of
+/// threads. Throws core::Error when stopped.
+void directIrradiance(const World& world, const TexelMap& texels, int layer, const DirectOptions& options,
+                      const core::Progress& progress, ProgressShare share, std::span<Vec3> irradiance);
+
+}  // namespace saccade::raytrace

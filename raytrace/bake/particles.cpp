@@ -1,0 +1,131 @@
+#include "raytrace/bake/particles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/random.h"
+#include "raytrace/bsdf.h"
+#include "raytrace/lights.h"
+#include "raytrace/surface.h"
+
+namespace saccade::raytrace {
+namespace {
+
+constexpr std::uint64_t kBatch = 4096;              // particles per piece of work
+constexpr int kMaxEvents = 256;                     // surfaces met; a mirror box would not end otherwise
+constexpr std::uint32_t kParticleStream = 0x7061u;  // keeps particles' random numbers apart from texels'
+constexpr float kMaxNormalRatio = 4;  // bound on cos(shading) / cos(geometric) at grazing angles
+
+/// Follows one particle at a time; one per thread.
+class Tracer {
+ public:
+  Tracer(const World& world, const TexelMap& texels, FluxGrid& flux)
+      : world_(world),
+        texels_(texels),
+        flux_(flux),
+        perWatt_(static_cast<float>(1 / world.lights().totalPower())) {}
+
+  void follow(std::uint64_t index, std::uint32_t seed) {
+    core::PixelSampler random(kParticleStream, 0, index, seed);
+    const float uLight = random.next1D();
+    const Vec2 uPosition = random.next2D();
+    const EmissionSample start = world_.lights().sampleEmission(uLight, uPosition, random.next2D());
+    Vec3 weight = start.flux * perWatt_;
+    Ray ray{offsetOrigin(start.origin, start.normal, start.direction, start.offset), start.direction, 0,
+            core::kInfinity};
+    bool direct = true;  // has met nothing but see-through surfaces: what shadow rays account for
+    for (int event = 0; event < kMaxEvents && core::luminance(weight) > 0; ++event) {
+      Hit hit;
+      if (!world_.intersect(ray, hit, counters_)) return;
+      const Surface surface = makeSurface(world_, hit, ray.direction);
+      if (!direct) deposit(surface, hit, ray.direction, weight);
+      const float uCoverage = random.next1D();
+      if (uCoverage >= surface.point.coverage) {
+        ray = surface.leave(ray.direction);
+        continue;
+      }
+      direct = false;
+      if (!surface.scatters() || !scatter(surface, random, ray, weight)) return;
+    }
+  }
+
+ private:
+  void deposit(const Surface& surface, const Hit& hit, const Vec3& direction, const Vec3& weight) {
+    if (!surface.front && !surface.material->doubleSided) return;
+    const std::size_t texel = texels_.texelAt(surface.lightmapUv);
+    if (texels_.chartOf(texel) < 0) return;  // shows no irradiance
+    const float cosGeometric = -glm::dot(direction, surface.ng);
+    const float cosShading =
+        -glm::dot(direction, smoothNormal(world_, hit.triangle, hit.u, hit.v, surface.ng));
+    const float ratio = std::clamp(cosShading / std::max(cosGeometric, 1e-6f), 0.0f, kMaxNormalRatio);
+    flux_.add(texel, surface.front ? 0 : 1, weight * ratio);
+  }
+
+  /// The next ray; false when the particle is absorbed.
+  static bool scatter(const Surface& surface, core::PixelSampler& random, Ray& ray, Vec3& weight) {
+    const Bsdf bsdf(surface, -ray.direction);
+    const float uLobe = random.next1D();
+    const std::optional<BsdfSample> sample = bsdf.sample(uLobe, random.next2D(), kLobeAll);
+    const float uSurvive = random.next1D();
+    if (!sample) return false;
+    const Vec3 next = weight * sample->weight;
+    // Weights stay near that of the mean particle: survive with the share of luminance that is left.
+    const float survival = std::min(1.0f, core::luminance(next) / core::luminance(weight));
+    if (!(uSurvive < survival)) return false;
+    weight = next / survival;
+    ray = surface.leave(sample->direction);
+    return true;
+  }
+
+  const World& world_;
+  const TexelMap& texels_;
+  FluxGrid& flux_;
+  float perWatt_;
+  RayCounters counters_;
+};
+
+}  // namespace
+
+void FluxGrid::add(std::size_t texel, int layer, const Vec3& weight) {
+  const auto units = [](float w) {
+    return static_cast<std::uint64_t>(std::llround(std::clamp(w, 0.0f, kMaxWeight) * kUnitsPerWeight));
+  };
+  Cell& cell = cells_[static_cast<std::size_t>(layer) * texels_ + texel];
+  const auto accumulate = [](std::uint64_t& sum, std::uint64_t x) {
+    std::atomic_ref<std::uint64_t>(sum).fetch_add(x, std::memory_order_relaxed);
+  };
+  for (int c = 0; c < 3; ++c) accumulate(cell.rgb[c], units(weight[c]));
+  const float y = core::luminance(weight);
+  accumulate(cell.squared, units(y * y));
+}
+
+void traceParticles(const World& world, const TexelMap& texels, std::uint64_t total, std::uint32_t seed,
+                    int threads, const core::Progress& progress, ProgressShare share, ParticleState& state) {
+  if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= state.emitted) return;
+  const std::uint64_t first = state.emitted;
+  const std::uint64_t batches = (total - first + kBatch - 1) / kBatch;
+  parallelFor(threads, batches, progress, share, [&](std::size_t batch) {
+    Tracer tracer(world, texels, state.flux);
+    const std::uint64_t begin = first + batch * kBatch;
+    for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) tracer.follow(i, seed);
+  });
+  state.emitted = total;
+}
+
+double wattsPerWeight(const World& world, std::uint64_t emitted) {
+  return emitted ? world.lights().totalPower() / static_cast<double>(emitted) : 0.0;
+}
+
+Vec3 smoothNormal(const World& world, std::uint32_t triangle, float u, float v, const Vec3& geometric) {
+  const TriangleShape& shape = world.shape(triangle);
+  Vec3 n = shape.normal[0] * (1 - u - v) + shape.normal[1] * u + shape.normal[2] * v;
+  const float length = glm::length(n);
+  if (!(length > 1e-6f)) return geometric;
+  n /= length;
+  // Front and back are the geometric normal's: a shading normal that leans over is bent to its side.
+  const Vec3 ngFront =
+      glm::cross(shape.position[1] - shape.position[0], shape.position[2] - shape.position[0]);
+  return glm::dot(ngFront, geometric) >= 0 ? n : -n;
+}
+
+}  // namespace saccade::raytrace

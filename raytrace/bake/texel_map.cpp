@@ -1,0 +1,182 @@
+#include "raytrace/bake/texel_map.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <unordered_map>
+
+#include "raytrace/bake/cell_clip.h"
+#include "raytrace/bake/charts.h"
+
+namespace saccade::raytrace {
+namespace {
+
+/// Union-find over a mesh's vertices.
+class Components {
+ public:
+  explicit Components(std::size_t count) : parent_(count) {
+    for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::uint32_t>(i);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Chart number of each triangle, from 0: triangles are of one chart when they share a vertex or a place in
+/// the atlas. Charts are found from the uv alone so that maps read from a file need no list of them.
+std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
+  Components parts(mesh.positions.size());
+  std::unordered_map<std::uint64_t, std::uint32_t> byUv;
+  byUv.reserve(mesh.lightmapUv.size());
+  for (std::size_t v = 0; v < mesh.lightmapUv.size(); ++v) {
+    const core::Vec2 uv = mesh.lightmapUv[v];
+    const std::uint64_t key =
+        (std::uint64_t{std::bit_cast<std::uint32_t>(uv.x)} << 32) | std::bit_cast<std::uint32_t>(uv.y);
+    const auto self = static_cast<std::uint32_t>(v);
+    parts.join(self, byUv.try_emplace(key, self).first->second);
+  }
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    parts.join(mesh.indices[i], mesh.indices[i + 1]);
+    parts.join(mesh.indices[i], mesh.indices[i + 2]);
+  }
+  std::vector<std::int32_t> number(mesh.positions.size(), -1), out(mesh.triangleCount());
+  std::int32_t next = 0;
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    std::int32_t& n = number[parts.find(mesh.indices[3 * t])];
+    if (n < 0) n = next++;
+    out[t] = n;
+  }
+  return out;
+}
+
+double worldArea(const core::Mesh& mesh, std::size_t t) {
+  const glm::dvec3 a = mesh.positions[mesh.indices[3 * t]];
+  const glm::dvec3 b = mesh.positions[mesh.indices[3 * t + 1]];
+  const glm::dvec3 c = mesh.positions[mesh.indices[3 * t + 2]];
+  return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+
+Plane2 texelPosition(const core::Mesh& mesh, std::size_t corner, int size) {
+  return Plane2(mesh.lightmapUv[mesh.indices[corner]]) * static_cast<double>(size);
+}
+
+}  // namespace
+
+TexelMap::TexelMap(const core::Scene& charted, int size) : scene_(charted), size_(size) {
+  chartOf_.assign(texelCount(), -1);
+  area_.assign(texelCount(), 0.0f);
+  findCharts();
+  cover();
+}
+
+void TexelMap::findCharts() {
+  chartOfTriangle_.resize(scene_.objects.size());
+  for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
+    const core::Object& object = scene_.objects[o];
+    const core::Material& material = scene_.materials[static_cast<std::size_t>(object.material)];
+    if (!showsIrradiance(material)) continue;
+    if (object.mesh.lightmapUv.size() != object.mesh.positions.size()) {
+      throw core::Error("illumination maps: object '" + object.name +
+                        "' has no charts; call applyCharts first");
+    }
+    chartOfTriangle_[o] = chartsOfMesh(object.mesh);
+    const auto base = static_cast<std::int32_t>(charts_.size());
+    for (std::int32_t& chart : chartOfTriangle_[o]) {
+      chart += base;
+      if (static_cast<std::size_t>(chart) >= charts_.size()) {
+        charts_.push_back({size_, size_, 0, 0, material.doubleSided});
+      }
+    }
+    anyDoubleSided_ |= material.doubleSided;
+  }
+}
+
+void TexelMap::cover() {
+  struct Placed {
+    std::uint32_t texel;
+    TexelFragment fragment;
+  };
+  std::vector<Placed> placed;
+  std::vector<std::size_t> count(texelCount() + 1, 0);
+  for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
+    const core::Mesh& mesh = scene_.objects[o].mesh;
+    for (std::size_t t = 0; t < chartOfTriangle_[o].size(); ++t) {
+      const Plane2 a = texelPosition(mesh, 3 * t, size_), b = texelPosition(mesh, 3 * t + 1, size_),
+                   c = texelPosition(mesh, 3 * t + 2, size_);
+      const double whole = 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+      const double perCell = whole > 0 ? worldArea(mesh, t) / whole : 0;
+      if (!(perCell > 0) || !std::isfinite(perCell)) continue;
+      const std::int32_t chart = chartOfTriangle_[o][t];
+      ChartRect& rect = charts_[static_cast<std::size_t>(chart)];
+      forEachCell(a, b, c, size_, size_, [&](int x, int y, double cells) {
+        const auto texel = static_cast<std::uint32_t>(y * size_ + x);
+        const auto area = static_cast<float>(cells * perCell);
+        if (!(area > 0)) return;
+        placed.push_back({texel, {static_cast<std::uint32_t>(o), static_cast<std::uint32_t>(t), area}});
+        ++count[texel + 1];
+        chartOf_[texel] = chart;
+        area_[texel] += area;
+        rect.x0 = std::min(rect.x0, x);
+        rect.y0 = std::min(rect.y0, y);
+        rect.x1 = std::max(rect.x1, x + 1);
+        rect.y1 = std::max(rect.y1, y + 1);
+      });
+    }
+  }
+  for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
+  first_ = count;
+  fragments_.resize(placed.size());
+  for (const Placed& p : placed) fragments_[count[p.texel]++] = p.fragment;
+}
+
+MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const {
+  const std::span<const TexelFragment> parts = fragments(texel);
+  const TexelFragment* part = &parts.front();
+  float rest = u * area_[texel];
+  for (const TexelFragment& f : parts) {
+    part = &f;
+    if (rest < f.area) break;
+    rest -= f.area;
+  }
+  const core::Mesh& mesh = scene_.objects[part->object].mesh;
+  const std::size_t corner = std::size_t{3} * part->triangle;
+  const Plane2 a = texelPosition(mesh, corner, size_), b = texelPosition(mesh, corner + 1, size_),
+               c = texelPosition(mesh, corner + 2, size_);
+  const CellPolygon cell = clipToCell(a, b, c, static_cast<int>(texel % static_cast<std::size_t>(size_)),
+                                      static_cast<int>(texel / static_cast<std::size_t>(size_)));
+  // Choose a triangle of the polygon's fan by area, then a point in it.
+  double target = v * cell.twiceArea(), share = 0;
+  int fan = 1;
+  for (; fan + 1 < cell.count; ++fan) {
+    const Plane2 e = cell.corner[fan] - cell.corner[0], f = cell.corner[fan + 1] - cell.corner[0];
+    const double twice = e.x * f.y - e.y * f.x;
+    share = twice != 0 ? std::clamp(target / twice, 0.0, 1.0) : 0.5;
+    if (std::abs(target) <= std::abs(twice) || fan + 2 >= cell.count) break;
+    target -= twice;
+  }
+  const double root = std::sqrt(share);
+  const Plane2 p =
+      cell.corner[0] * (1 - root) + (cell.corner[fan] * (1.0 - w) + cell.corner[fan + 1] * double{w}) * root;
+  const Plane2 e = b - a, f = c - a, d = p - a;
+  const double whole = e.x * f.y - e.y * f.x;
+  MeshPoint out{part->object, part->triangle, 0, 0};
+  out.b1 = static_cast<float>(std::clamp((d.x * f.y - d.y * f.x) / whole, 0.0, 1.0));
+  out.b2 = static_cast<float>(std::clamp((e.x * d.y - e.y * d.x) / whole, 0.0, 1.0 - out.b1));
+  return out;
+}
+
+std::size_t TexelMap::texelAt(const core::Vec2& uv) const {
+  const auto clampTexel = [&](float at) { return std::clamp(static_cast<int>(at * size_), 0, size_ - 1); };
+  return static_cast<std::size_t>(clampTexel(uv.y)) * size_ + clampTexel(uv.x);
+}
+
+}  // namespace saccade::raytrace

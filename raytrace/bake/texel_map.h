@@ -1,0 +1,70 @@
+// Which surface each texel of the atlas holds: covered areas, exact at chart borders, and points on them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/types.h"
+#include "core/scene/scene.h"
+
+namespace saccade::raytrace {
+
+/// The part of one triangle that lies in one texel.
+struct TexelFragment {
+  std::uint32_t object = 0, triangle = 0;
+  float area = 0;  ///< m^2 in the world
+};
+
+/// A chart's own texels: [x0, x1) x [y0, y1), gutter not included.
+struct ChartRect {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  bool doubleSided = false;  ///< its back has its own irradiance, in layer 1
+};
+
+/// A point of a charted mesh.
+struct MeshPoint {
+  std::uint32_t object = 0, triangle = 0;
+  float b1 = 0, b2 = 0;  ///< barycentric weights of corners 1 and 2
+};
+
+/// Built once from a charted scene (core::applyCharts called); read-only afterwards, any thread.
+class TexelMap {
+ public:
+  /// Objects that show no irradiance have no texels. Throws core::Error when a mesh carries no lightmapUv.
+  TexelMap(const core::Scene& charted, int size);
+
+  int size() const { return size_; }
+  std::size_t texelCount() const { return static_cast<std::size_t>(size_) * size_; }
+  const std::vector<ChartRect>& charts() const { return charts_; }
+  /// Index into charts(), or -1 where the texel holds no surface.
+  std::int32_t chartOf(std::size_t texel) const { return chartOf_[texel]; }
+  /// World area in m^2 that the texel covers: the exact area of the triangles clipped to it, so that flux /
+  /// area is unbiased in texels that a chart's border cuts.
+  float area(std::size_t texel) const { return area_[texel]; }
+  std::span<const TexelFragment> fragments(std::size_t texel) const {
+    return {fragments_.data() + first_[texel], fragments_.data() + first_[texel + 1]};
+  }
+  /// A point spread evenly over the texel's covered area for (u, v, w) in [0, 1)^3. The texel must hold some.
+  MeshPoint pointOn(std::size_t texel, float u, float v, float w) const;
+  /// The texel that a point of a charted mesh lies in.
+  std::size_t texelAt(const core::Vec2& lightmapUv) const;
+  /// A layer for backs is needed.
+  bool anyDoubleSided() const { return anyDoubleSided_; }
+
+ private:
+  void findCharts();
+  void cover();
+
+  const core::Scene& scene_;
+  int size_;
+  bool anyDoubleSided_ = false;
+  std::vector<std::vector<std::int32_t>> chartOfTriangle_;  ///< by object
+  std::vector<ChartRect> charts_;
+  std::vector<std::int32_t> chartOf_;
+  std::vector<float> area_;
+  std::vector<std::size_t> first_;
+  std::vector<TexelFragment> fragments_;
+};
+
+}  // namespace saccade::raytrace
