@@ -1,6 +1,7 @@
-// Directional and mean albedo of the single-scatter GGX lobe with Schlick's Fresnel, F90 = 1
-// (height-correlated Smith):
-//   E(cosV) = F0 * a + b, tabulated once by fixed quadrature (deterministic).
+// Directional and mean albedo of the single-scatter GGX lobe with Schlick's Fresnel (height-correlated
+// Smith):
+//   E(cosV) = F0 * a + F90 * b, tabulated once by fixed quadrature (deterministic).
+// F90 is 1 for metals and dielectricF90 for dielectrics.
 // The Lambert lobe under a specular lobe is layered so that energy is conserved and reciprocal (Kelemen,
 // Szirmay-Kalos 2001):
 //   f_d = c/pi * (1 - E(v)) (1 - E(l)) / (1 - Emean)
@@ -15,7 +16,7 @@ namespace saccade::core {
 
 struct AlbedoPair {
   float scale = 0;  ///< a: multiplies F0
-  float bias = 0;   ///< b
+  float bias = 0;   ///< b: multiplies F90
 };
 
 /// cosView and roughness (perceptual) in [0, 1], clamped. Thread safe.
@@ -25,6 +26,12 @@ AlbedoPair meanAlbedo(float roughness);  ///< cosine-weighted mean over the hemi
 /// Reflectance at normal incidence of a dielectric: ((ior - 1) / (ior + 1))^2 * specularColor * specular,
 /// clamped to 1.
 Vec3 dielectricF0(const Material& material);
+
+/// Reflectance of the dielectric lobe at grazing incidence, for an F0 that specular is already part of:
+/// min(specular, 50 * largest component of F0). KHR_materials_specular has F90 = specular. Departure: an F0
+/// below 2 % fades the lobe out (Lagarde 2014), so that specularColor = 0 and ior = 1 mean no lobe at all, as
+/// in the programs that write such files.
+float dielectricF90(const Vec3& f0, float specular);
 
 /// The view-independent diffuse factor of a material apart from baseColor, (1 - metallic) and (1 -
 /// transmission), which may be textured: 1 - luminance-mean specular albedo of its dielectric lobe (roughness

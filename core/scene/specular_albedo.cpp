@@ -1,0 +1,158 @@
+#include "core/scene/specular_albedo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/scene/texture_mean.h"
+
+namespace saccade::core {
+namespace {
+
+// The table runs over t = sqrt(cosView), which puts rows where E bends most (grazing), and over perceptual
+// roughness. Each entry is a midpoint rule over the distribution of visible normals.
+constexpr int kCosines = 64;
+constexpr int kRoughnesses = 33;
+constexpr int kPolarSteps = 32;
+constexpr int kAzimuthSteps = 24;  // half the circle: the integrand is symmetric
+constexpr float kSmallestCosine = 1e-4f;
+/// See dielectricF90.
+constexpr float kF90OverF0 = 50;
+
+/// Smith's Lambda times two, plus one, times cosine: cos + sqrt(alpha^2 + (1 - alpha^2) cos^2) = cos * (2 + 2
+/// L).
+float smithTerm(float cosine, float alpha2) {
+  return cosine + std::sqrt(alpha2 + (1 - alpha2) * cosine * cosine);
+}
+
+/// Height-correlated G2 over G1(view): the weight of a sample of the visible normals (Heitz 2014, 2018).
+float weight(float cosView, float cosLight, float alpha2) {
+  const float view = std::sqrt(alpha2 + (1 - alpha2) * cosView * cosView);
+  const float light = std::sqrt(alpha2 + (1 - alpha2) * cosLight * cosLight);
+  return cosLight * smithTerm(cosView, alpha2) / (cosLight * view + cosView * light);
+}
+
+/// Visible normal for view (sin, 0, cos) by Heitz 2018, for (u1, phi) with u1 in (0, 1).
+Vec3 visibleNormal(const Vec3& view, float alpha, float u1, float phi) {
+  const Vec3 stretched = glm::normalize(Vec3(alpha * view.x, 0, view.z));
+  const Vec3 t1(0, stretched.x > 0 ? -1.0f : 1.0f, 0);
+  const Vec3 t2 = glm::cross(stretched, t1);
+  const float r = std::sqrt(u1);
+  const float a = r * std::cos(phi);
+  const float s = 0.5f * (1 + stretched.z);
+  const float b = (1 - s) * std::sqrt(std::max(0.0f, 1 - a * a)) + s * r * std::sin(phi);
+  const Vec3 n = a * t1 + b * t2 + std::sqrt(std::max(0.0f, 1 - a * a - b * b)) * stretched;
+  return glm::normalize(Vec3(alpha * n.x, alpha * n.y, std::max(1e-7f, n.z)));
+}
+
+AlbedoPair integrate(float cosView, float roughness) {
+  const float alpha = roughness * roughness;
+  const Vec3 view(std::sqrt(std::max(0.0f, 1 - cosView * cosView)), 0, cosView);
+  double scale = 0, bias = 0;
+  for (int i = 0; i < kPolarSteps; ++i) {
+    for (int j = 0; j < kAzimuthSteps; ++j) {
+      const float u1 = (static_cast<float>(i) + 0.5f) / kPolarSteps;
+      // Half circle around the plane of incidence: a = r cos(phi) is symmetric, b = r sin(phi) is not.
+      const float phi = (static_cast<float>(j) + 0.5f) / kAzimuthSteps * kPi - 0.5f * kPi;
+      const Vec3 normal = visibleNormal(view, alpha, u1, phi);
+      const float cosHalf = std::min(1.0f, glm::dot(view, normal));
+      const float cosLight = 2 * cosHalf * normal.z - view.z;
+      if (cosHalf <= 0 || cosLight <= 0) continue;
+      const float w = weight(cosView, cosLight, alpha * alpha);
+      const float fresnel = static_cast<float>(std::pow(1.0f - cosHalf, 5));
+      scale += static_cast<double>(w * (1 - fresnel));
+      bias += static_cast<double>(w * fresnel);
+    }
+  }
+  constexpr double kCount = kPolarSteps * kAzimuthSteps;
+  return {static_cast<float>(scale / kCount), static_cast<float>(bias / kCount)};
+}
+
+AlbedoPair mix(const AlbedoPair& a, const AlbedoPair& b, float t) {
+  return {a.scale + t * (b.scale - a.scale), a.bias + t * (b.bias - a.bias)};
+}
+
+float unit(float x) { return x >= 0 ? std::min(x, 1.0f) : 0.0f; }  // NaN gives 0
+
+struct Table {
+  std::array<std::array<AlbedoPair, kCosines>, kRoughnesses> directional;
+  std::array<AlbedoPair, kRoughnesses> mean;
+
+  Table() {
+    for (int r = 0; r < kRoughnesses; ++r) {
+      for (int c = 0; c < kCosines; ++c) {
+        const float t = static_cast<float>(c) / (kCosines - 1);
+        directional[r][c] =
+            integrate(std::max(kSmallestCosine, t * t), static_cast<float>(r) / (kRoughnesses - 1));
+      }
+      mean[r] = meanOf(directional[r]);
+    }
+  }
+
+  static AlbedoPair lookup(const std::array<AlbedoPair, kCosines>& row, float cosView) {
+    const float at = std::sqrt(cosView) * (kCosines - 1);
+    const int i = std::min(static_cast<int>(at), kCosines - 2);
+    return mix(row[i], row[i + 1], at - static_cast<float>(i));
+  }
+
+  /// 2 * integral of E(c) c dc, midpoint rule on the interpolated row.
+  static AlbedoPair meanOf(const std::array<AlbedoPair, kCosines>& row) {
+    constexpr int kSteps = 1024;
+    double scale = 0, bias = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      const float c = (static_cast<float>(i) + 0.5f) / kSteps;
+      const AlbedoPair e = lookup(row, c);
+      scale += 2.0 * static_cast<double>(e.scale * c) / kSteps;
+      bias += 2.0 * static_cast<double>(e.bias * c) / kSteps;
+    }
+    return {static_cast<float>(scale), static_cast<float>(bias)};
+  }
+};
+
+const Table& table() {
+  static const Table instance;
+  return instance;
+}
+
+struct RoughnessRow {
+  int index;
+  float fraction;
+};
+RoughnessRow rowOf(float roughness) {
+  const float at = unit(roughness) * (kRoughnesses - 1);
+  const int i = std::min(static_cast<int>(at), kRoughnesses - 2);
+  return {i, at - static_cast<float>(i)};
+}
+
+}  // namespace
+
+AlbedoPair directionalAlbedo(float cosView, float roughness) {
+  const Table& t = table();
+  const RoughnessRow row = rowOf(roughness);
+  const float c = unit(cosView);
+  return mix(Table::lookup(t.directional[row.index], c), Table::lookup(t.directional[row.index + 1], c),
+             row.fraction);
+}
+
+AlbedoPair meanAlbedo(float roughness) {
+  const Table& t = table();
+  const RoughnessRow row = rowOf(roughness);
+  return mix(t.mean[row.index], t.mean[row.index + 1], row.fraction);
+}
+
+Vec3 dielectricF0(const Material& material) {
+  const float r = (material.ior - 1) / (material.ior + 1);
+  return glm::min(r * r * material.specularColor * material.specular, Vec3(1));
+}
+
+float dielectricF90(const Vec3& f0, float specular) {
+  return std::min(unit(specular), kF90OverF0 * std::max({f0.x, f0.y, f0.z, 0.0f}));
+}
+
+float baseDiffuseFactor(const Scene& scene, const Material& material) {
+  if (material.unlit) return 1;
+  const MaterialMeans means = materialMeans(scene, material);
+  return 1 - luminance(means.dielectricAlbedo);
+}
+
+}  // namespace saccade::core

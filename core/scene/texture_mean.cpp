@@ -1,0 +1,73 @@
+#include "core/scene/texture_mean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/image_io.h"
+#include "core/scene/specular_albedo.h"
+
+namespace saccade::core {
+namespace {
+
+constexpr int kGrid = 512;
+
+const std::array<float, 256>& decodeTable(bool srgb) {
+  static const auto make = [](bool curve) {
+    std::array<float, 256> t{};
+    for (int i = 0; i < 256; ++i) {
+      const float x = static_cast<float>(i) / 255.0f;
+      t[static_cast<std::size_t>(i)] = curve ? decodeSrgb(x) : x;
+    }
+    return t;
+  };
+  static const std::array<float, 256> curved = make(true), straight = make(false);
+  return srgb ? curved : straight;
+}
+
+Vec4 slotMean(const Scene& scene, const TextureSlot& slot) {
+  return slot ? textureMean(scene.textures[static_cast<std::size_t>(slot.texture)]) : Vec4(1);
+}
+
+}  // namespace
+
+Vec4 textureMean(const Texture& texture) {
+  const ImageRgba8& image = texture.image;
+  if (image.empty()) return Vec4(1);
+  const auto& decode = decodeTable(texture.srgb);
+  const int stepX = std::max(1, image.width() / kGrid), stepY = std::max(1, image.height() / kGrid);
+  double sum[4] = {};
+  double count = 0;
+  for (int y = stepY / 2; y < image.height(); y += stepY) {
+    for (int x = stepX / 2; x < image.width(); x += stepX) {
+      const Rgba8& p = image.at(x, y);
+      sum[0] += static_cast<double>(decode[p.r]);
+      sum[1] += static_cast<double>(decode[p.g]);
+      sum[2] += static_cast<double>(decode[p.b]);
+      sum[3] += p.a / 255.0;
+      ++count;
+    }
+  }
+  return Vec4(sum[0] / count, sum[1] / count, sum[2] / count, sum[3] / count);
+}
+
+MaterialMeans materialMeans(const Scene& scene, const Material& material) {
+  MaterialMeans m;
+  const Vec4 base = slotMean(scene, material.baseColorTexture);
+  const Vec4 metallicRoughness = slotMean(scene, material.metallicRoughnessTexture);
+  m.baseColor = material.baseColor * Vec3(base);
+  m.alpha = material.alpha * base.w;
+  m.metallic = material.metallic * metallicRoughness.z;
+  m.roughness = material.roughness * metallicRoughness.y;
+  m.transmission = material.transmission * slotMean(scene, material.transmissionTexture).x;
+
+  const float specularWeight = slotMean(scene, material.specularTexture).w;
+  const Vec3 specularTint(slotMean(scene, material.specularColorTexture));
+  const Vec3 f0 = dielectricF0(material) * specularTint * specularWeight;
+  const AlbedoPair mean = meanAlbedo(m.roughness);
+  m.dielectricAlbedo = f0 * mean.scale + dielectricF90(f0, material.specular * specularWeight) * mean.bias;
+  m.metallicAlbedo = m.baseColor * mean.scale + mean.bias;
+  return m;
+}
+
+}  // namespace saccade::core
