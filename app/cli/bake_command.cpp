@@ -1,0 +1,46 @@
+// saccade bake: illumination maps ahead of time.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/cli/console.h"
+#include "app/cli/options.h"
+#include "app/commands.h"
+#include "app/session/headless.h"
+#include "app/session/workspace.h"
+
+namespace saccade::app {
+
+namespace {
+
+struct BakeOptions {
+  SceneOptions scene;
+  RunOptions run;
+  std::string output;
+};
+
+int bake(const BakeOptions& o) {
+  const auto start = std::chrono::steady_clock::now();
+  BakeRequest request{.file = o.output, .always = true, .threads = tracerThreads(o.run), .seed = o.run.seed};
+  const auto workspace = openWorkspace(o.scene, request, interruptToken());
+  const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
+  std::printf("%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(), workspace->maps.width,
+              workspace->maps.height, workspace->maps.layers, workspace->maps.layers == 1 ? "" : "s",
+              static_cast<unsigned long long>(workspace->maps.photons), workspace->maps.quality.c_str(),
+              millisecondsSince(start) / 1000);
+  return 0;
+}
+
+}  // namespace
+
+void addBakeCommand(CLI::App& program, Run& run) {
+  CLI::App* command =
+      program.add_subcommand("bake", "Compute a scene's illumination maps (other commands do it by themselves when needed)");
+  auto o = std::make_shared<BakeOptions>();
+  addSceneOptions(*command, o->scene);
+  command->add_option("-o,--output", o->output, "Map file to write (default: the user's cache folder)");
+  command->add_option("--photons", o->scene.photons, "Particles to trace, instead of what the quality says");
+  addRunOptions(*command, o->run);
+  command->callback([o, &run] { run = [o] { return bake(*o); }; });
+}
+
+}  // namespace saccade::app

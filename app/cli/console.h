@@ -1,0 +1,39 @@
+// What the user reads on stderr: warnings, errors, progress with time left.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "core/error.h"
+#include "core/progress.h"
+
+namespace saccade::app {
+
+/// `saccade: <level>: <text>` lines on stderr. Call once, before anything is logged.
+void setupLog();
+void printWarnings(const core::Warnings& warnings);
+
+/// A bar with percentage and time left on a terminal; a line per tenth elsewhere. One thread.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string label);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+  /// Fraction in [0, 1].
+  void show(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_{};
+  bool terminal_;
+  int lastTenth_ = -1;
+  bool shown_ = false;
+};
+
+/// Stop token raised by SIGINT and SIGTERM once installed: long work ends early, saying so.
+std::stop_token interruptToken();
+
+}  // namespace saccade::app

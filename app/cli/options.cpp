@@ -1,0 +1,159 @@
+#include "app/cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <thread>
+
+#include "core/error.h"
+
+namespace saccade::app {
+
+void addSceneOptions(CLI::App& command, SceneOptions& o) {
+  const std::string group = "Scene";
+  command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
+  command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")->group(group);
+  command.add_option("--quality", o.quality, "Quality of the maps when they have to be baked")
+      ->check(CLI::IsMember({"preview", "medium", "high"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--light", o.load.lights,
+                     "Add a light: point:pos=x,y,z,power=r,g,b | spot:... | directional:... | panel:at=x,y,z,size=w,h,radiance=r,g,b")
+      ->group(group);
+  command.add_option("--unit-scale", o.load.unitScale, "Metres per unit of the file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--nondiffuse", o.load.nonDiffuseThreshold,
+                     "An object is corrected when the albedo of its lobes other than Lambert exceeds this")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--scene", o.load.scene, "glTF scene index (default: the file's own choice)")->group(group);
+  command.add_option("--time", o.load.timeSeconds, "Scene time in seconds")->capture_default_str()->group(group);
+}
+
+void addCameraOptions(CLI::App& command, CameraOptions& o) {
+  const std::string group = "Camera";
+  command.add_option("--camera", o.camera, "Camera of the file, by name or number from 0")->group(group);
+  command.add_option("--eye", o.eye, "Eye position x,y,z in metres")->delimiter(',')->expected(3)->group(group);
+  command.add_option("--at", o.at, "Point looked at x,y,z")->delimiter(',')->expected(3)->group(group);
+  command.add_option("--up", o.up, "Up direction x,y,z")->delimiter(',')->expected(3)->group(group);
+  command.add_option("--fov", o.fovDegrees, "Vertical field of view in degrees")->check(CLI::Range(0.1, 179.9))->group(group);
+}
+
+void addRunOptions(CLI::App& command, RunOptions& o) {
+  const std::string group = "Running";
+  command.add_option("--context", o.context, "OpenGL off screen: osmesa or egl")
+      ->check(CLI::IsMember({"osmesa", "egl"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--threads", o.threads, "Ray-tracing threads; 0 runs every stage inline with a virtual clock "
+                                             "(default: one less than the cores)")
+      ->check(CLI::Range(0, 256))
+      ->group(group);
+  command.add_option("--seed", o.seed, "Seed of all random numbers")->capture_default_str()->group(group);
+  command.add_option("--exposure", o.exposureEv, "Display exposure in EV (x 2^EV)")
+      ->check(CLI::Range(-32.0, 32.0))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--stats", o.statsFile, "Write counts and times to this JSON file")->group(group);
+}
+
+void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
+  const std::string group = "Corrections";
+  using attention::Order;
+  static const std::map<std::string, Order> kOrders{{"attention", Order::attention},
+                                                    {"task", Order::task},
+                                                    {"random", Order::random},
+                                                    {"scanline", Order::scanline},
+                                                    {"largest", Order::largest}};
+  command.add_option("--attention", o.attention.attention, "0 = saliency decides, 1 = task importance decides")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--order", o.attention.order, "Order of the corrections: attention, task, random, scanline, largest")
+      ->transform(CLI::CheckedTransformer(kOrders))
+      ->default_str("attention")
+      ->group(group);
+  command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--nmin", o.nMin, "Fewest samples of the level an object starts at")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--max-age", o.maxAge, "Samples older than this many camera changes are dropped")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--cache-mb", o.cacheMb, "Memory for cached samples, MB; 0 turns reuse off")
+      ->check(CLI::Range(0, 65536))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--job-size", o.jobSize, "Samples a tracer computes before it asks for the next region")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--spp", o.samplesPerPixel, "Sub-samples a pixel (corrective, raytrace: averaged at the pixel centre; path: "
+                                                 "over the pixel's square)")
+      ->check(CLI::Range(1, 1 << 20))
+      ->group(group);
+}
+
+void addSizeOption(CLI::App& command, ImageSize& size) {
+  command
+      .add_option_function<std::string>(
+          "--size",
+          [&size](const std::string& text) {
+            const std::size_t x = text.find('x');
+            const char* end = text.data() + text.size();
+            auto bad = [&] { throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT such as 512x512, got " + text); };
+            if (x == std::string::npos) bad();
+            const auto first = std::from_chars(text.data(), text.data() + x, size.width);
+            const auto second = std::from_chars(text.data() + x + 1, end, size.height);
+            if (first.ptr != text.data() + x || second.ptr != end || size.width < 1 || size.height < 1) bad();
+          },
+          "Image size WIDTHxHEIGHT")
+      ->default_str("512x512");
+}
+
+namespace {
+
+core::Vec3 toVec3(const std::vector<float>& v) { return {v[0], v[1], v[2]}; }
+
+const core::Camera& cameraByName(const core::Scene& scene, const std::string& name) {
+  for (const core::Camera& camera : scene.cameras) {
+    if (camera.name == name) return camera;
+  }
+  std::size_t index = 0;
+  const auto parsed = std::from_chars(name.data(), name.data() + name.size(), index);
+  if (parsed.ptr == name.data() + name.size() && index < scene.cameras.size()) return scene.cameras[index];
+  std::string known;
+  for (const core::Camera& camera : scene.cameras) known += (known.empty() ? "" : ", ") + camera.name;
+  throw core::UsageError("no camera '" + name + "' in " + scene.path + "; it has: " + known);
+}
+
+}  // namespace
+
+core::Camera chooseCamera(const core::Scene& scene, const CameraOptions& o) {
+  core::Camera camera = o.camera.empty() ? scene.cameras.at(0) : cameraByName(scene, o.camera);
+  const core::Vec3 sight = camera.at - camera.eye;
+  if (!o.eye.empty()) {
+    camera.eye = toVec3(o.eye);
+    camera.at = camera.eye + sight;
+  }
+  if (!o.at.empty()) camera.at = toVec3(o.at);
+  if (!o.up.empty()) camera.up = toVec3(o.up);
+  if (o.fovDegrees) camera.fovYDegrees = *o.fovDegrees;
+  return camera;
+}
+
+int tracerThreads(const RunOptions& options) {
+  if (options.threads >= 0) return options.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+}
+
+}  // namespace saccade::app

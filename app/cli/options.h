@@ -1,0 +1,69 @@
+// The options that several commands share, with their help texts in one place.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attention/importance.h"
+#include "core/camera.h"
+#include "core/scene/load.h"
+#include "core/scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace saccade::app {
+
+struct SceneOptions {
+  std::string path;
+  core::LoadOptions load;
+  std::string mapsFile;            ///< --maps; empty = the cache folder
+  std::string quality = "medium";  ///< of the implicit bake
+  std::uint64_t photons = 0;       ///< 0 = what the quality says
+};
+
+struct CameraOptions {
+  std::string camera;  ///< name or index in the file; empty = the first
+  std::vector<float> eye, at, up;
+  std::optional<float> fovDegrees;
+};
+
+struct RunOptions {
+  std::string context = "osmesa";
+  int threads = -1;  ///< tracer threads; -1 = one less than the cores, at least one; 0 = everything inline
+  std::uint32_t seed = 1;
+  float exposureEv = 0;
+  std::string statsFile;
+};
+
+struct CorrectiveOptions {
+  attention::AttentionOptions attention;
+  float delta = 0.1f;
+  int nMin = 10;
+  int maxAge = 30;
+  int cacheMb = 64;
+  int jobSize = 64;
+  int samplesPerPixel = 1;
+};
+
+struct ImageSize {
+  int width = 512, height = 512;
+};
+
+void addSceneOptions(CLI::App& command, SceneOptions& options);
+void addCameraOptions(CLI::App& command, CameraOptions& options);
+void addRunOptions(CLI::App& command, RunOptions& options);
+void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& options);
+/// --size WxH; throws core::UsageError on anything else.
+void addSizeOption(CLI::App& command, ImageSize& size);
+
+/// The camera the options ask for: one of the scene's, overridden field by field. Throws core::UsageError.
+core::Camera chooseCamera(const core::Scene& scene, const CameraOptions& options);
+
+/// Tracer threads after the default is resolved.
+int tracerThreads(const RunOptions& options);
+
+}  // namespace saccade::app

@@ -1,0 +1,128 @@
+// The frame loop of Haber 2001, section 4.1: draw, warp, correct until the deadline, composite, feed the analyzer.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "app/cli/options.h"
+#include "app/session/stats.h"
+#include "app/session/workspace.h"
+#include "attention/analyzer.h"
+#include "core/corrective/messages.h"
+#include "core/corrective/queues.h"
+#include "core/image.h"
+#include "raytrace/corrective_tracer.h"
+#include "raytrace/tracer_pool.h"
+#include "render/base/base_renderer.h"
+#include "render/splat/correction_layer.h"
+#include "render/splat/sample_cache.h"
+
+namespace saccade::app {
+
+/// What ends a frame's correction step (step 6). Exactly one of the three counts.
+struct FrameBudget {
+  enum class Kind { deadline, samples, converge } kind = Kind::deadline;
+  /// deadline: time from the start of the frame. With 0 threads a virtual clock counts instead: kVirtualRaysPerSecond.
+  std::chrono::duration<double> time{1.0 / 25};
+  /// samples: the first so many samples of the inline schedule, the same on any number of threads.
+  std::uint64_t samples = 0;
+
+  static FrameBudget untilDeadline(std::chrono::duration<double> t) { return {Kind::deadline, t, 0}; }
+  static FrameBudget firstSamples(std::uint64_t n) { return {Kind::samples, {}, n}; }
+  static FrameBudget untilConverged() { return {Kind::converge, {}, 0}; }
+};
+
+struct FrameLoopOptions {
+  CorrectiveOptions corrective;
+  int threads = 1;  ///< tracers; 0 = every stage inline
+  std::uint32_t seed = 1;
+  float exposureEv = 0;
+  /// An analyzer thread follows the walk; else each new frame is analysed before it is corrected (still pictures, inline
+  /// runs), which makes the schedule a function of the frame alone.
+  bool asynchronousAnalysis = false;
+};
+
+/// Main thread only: it owns the GL context, the camera, the correction layer and the sample cache.
+class FrameLoop {
+ public:
+  /// Rays that the virtual clock of inline runs lets pass in a second.
+  static constexpr double kVirtualRaysPerSecond = 2e6;
+
+  FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer, const FrameLoopOptions& options);
+  ~FrameLoop();
+  FrameLoop(const FrameLoop&) = delete;
+  FrameLoop& operator=(const FrameLoop&) = delete;
+
+  /// All eight steps for one frame. Throws what a worker threw. `stop` ends step 6 early.
+  void step(const core::Camera& camera, ImageSize size, const FrameBudget& budget, const std::stop_token& stop = {});
+
+  const core::ImageRgba8& display() const { return *display_; }  ///< of the last step
+  core::ImageRgb linear();                                       ///< base + correction of the last step
+  const core::FrameSnapshot& frame() const { return *frame_; }
+  const render::CorrectionLayer& layer() const { return layer_; }
+  const render::SampleCache& cache() const { return cache_; }
+  const attention::Analyzer& analyzer() const { return analyzer_; }
+  const RunStats& stats() const { return stats_; }
+  bool converged() const { return layer_.converged(); }
+
+  /// Weight between saliency (0) and task (1), from the window's slider.
+  void setAttention(float weight) { analyzer_.setAttention(weight); }
+  void setExposure(float ev) { options_.exposureEv = ev; }
+  void setDelta(float delta) { options_.corrective.delta = delta; }
+  /// Off: the base layer alone is shown; samples go on being traced.
+  void showCorrections(bool on) { showCorrections_ = on; }
+  /// Off: every frame starts without the samples of earlier ones.
+  void reuseSamples(bool on) { reuse_ = on; }
+  /// The next step draws again although the camera did not move.
+  void invalidate() { frame_ = nullptr; }
+
+  /// Called for each batch as it arrives, before it is splatted: tests perturb, shuffle and count through it.
+  std::function<void(core::SampleBatch&)> onBatch;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool cameraChanged(const core::Camera& camera, ImageSize size) const;
+  void beginFrame(const core::Camera& camera, ImageSize size);
+  void analyseNow();
+  void correct(Clock::time_point start, const FrameBudget& budget, const std::stop_token& stop);
+  void correctUntil(Clock::time_point deadline, const std::stop_token& stop);
+  void correctInline(const FrameBudget& budget, const std::stop_token& stop);
+  void correctSamples(std::uint64_t count, const std::stop_token& stop);
+  void correctAll(const std::stop_token& stop);
+  std::uint64_t takeInOrder(std::uint64_t atMost);
+  void dropPending();
+  void take(core::SampleBatch& batch);
+  void composite();
+  void feedAnalyzer();
+  void finishStats(Clock::time_point start, const FrameBudget& budget);
+
+  const Workspace& workspace_;
+  render::BaseRenderer& renderer_;
+  FrameLoopOptions options_;
+  bool showCorrections_ = true;
+  bool reuse_ = true;
+
+  core::RegionQueue regions_;
+  core::SampleQueue samples_;
+  core::SnapshotMailbox mailbox_;
+  raytrace::CorrectiveTracer tracer_;
+  render::CorrectionLayer layer_;
+  render::SampleCache cache_;
+  RunStats stats_;
+  core::FramePtr frame_;
+  std::shared_ptr<core::ImageRgba8> display_;
+  bool displayIsShared_ = false;  ///< the analyzer may be reading display_
+  double tailSeconds_ = 0;        ///< running mean of steps 7 and 8, kept free of the deadline
+  std::map<std::uint64_t, core::SampleBatch> pending_;  ///< sample budget: batches of this frame not yet taken
+  std::uint64_t nextSequence_ = 0;                      ///< sample budget: the batch to take next
+  // Declared last: their threads use the channels above and must end first.
+  attention::Analyzer analyzer_;
+  raytrace::TracerPool pool_;
+};
+
+}  // namespace saccade::app

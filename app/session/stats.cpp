@@ -1,0 +1,60 @@
+#include "app/session/stats.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace saccade::app {
+
+double RunStats::framePercentileMs(double p) const {
+  if (frameMs.empty()) return 0;
+  std::vector<double> sorted = frameMs;
+  std::sort(sorted.begin(), sorted.end());
+  const double rank = std::ceil(p * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::clamp(rank - 1, 0.0, static_cast<double>(sorted.size() - 1)))];
+}
+
+std::uint64_t peakBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+void writeStats(const std::filesystem::path& file, const RunStats& s) {
+  nlohmann::ordered_json json;
+  const double mean =
+      s.frameMs.empty() ? 0 : std::accumulate(s.frameMs.begin(), s.frameMs.end(), 0.0) / static_cast<double>(s.frameMs.size());
+  json["frame_ms"] = {{"mean", mean},
+                      {"p50", s.framePercentileMs(0.50)},
+                      {"p95", s.framePercentileMs(0.95)},
+                      {"p99", s.framePercentileMs(0.99)}};
+  json["missed_deadlines"] = s.missedDeadlines;
+  json["frames"] = s.frameMs.size();
+  json["samples"] = {{"traced", s.samplesTraced}, {"reused", s.samplesReused}, {"dropped", s.samplesDropped}};
+  json["samples_per_frame"] = s.samplesPerFrame;
+  for (int level = 1; level <= core::Lattice::kMaxLevel; ++level) {
+    json["levels"][std::to_string(level)] = s.levels[static_cast<std::size_t>(level)];
+  }
+  json["nondiffuse_pixels"] = s.nonDiffusePixels;
+  json["from_depth"] = s.fromDepth;
+  json["rays"] = s.rays;
+  json["rays_per_second"] = s.tracingSeconds > 0 ? static_cast<double>(s.rays) / s.tracingSeconds : 0;
+  json["stages_ms"] = s.stageMs;
+  json["peak_bytes"] = peakBytes();
+  json["converged"] = s.converged;
+  json["seed"] = s.seed;
+  json["threads"] = s.threads;
+  json["context"] = s.context;
+  json["renderer"] = s.renderer;
+  std::ofstream stream(file);
+  stream << json.dump(2) << '\n';
+  if (!stream.flush()) throw core::Error(file.string() + ": cannot be written; check the folder given to --stats");
+}
+
+}  // namespace saccade::app

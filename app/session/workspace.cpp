@@ -1,0 +1,109 @@
+#include "app/session/workspace.h"
+
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
+#include "app/cli/console.h"
+#include "raytrace/bake/baker.h"
+#include "raytrace/bake/charts.h"
+
+namespace saccade::app {
+
+namespace {
+
+constexpr int kMaxAtlasSize = 4096;
+
+/// Settings that tell maps of one scene apart in the cache folder.
+std::string settingsName(const SceneOptions& options, const BakeRequest& bake) {
+  std::string name = options.quality;
+  if (options.photons > 0) name += "-" + std::to_string(options.photons);
+  if (bake.seed != 1) name += "-seed" + std::to_string(bake.seed);
+  return name;
+}
+
+/// Maps that can be used as they are. A file that the user named is never overwritten when it belongs to another scene.
+std::optional<core::IlluminationMaps> existingMaps(const std::filesystem::path& file, std::uint64_t key, bool namedByUser) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    return core::readMaps(file, key);
+  } catch (const core::Error& e) {
+    if (namedByUser) throw core::Error(std::string(e.what()) + "; name another file or bake it again with 'saccade bake -o'");
+    spdlog::warn("{}; baking again", e.what());
+    return std::nullopt;
+  }
+}
+
+void store(const std::filesystem::path& file, const core::IlluminationMaps& maps, bool namedByUser) {
+  try {
+    std::error_code ignored;  // writeMaps reports what went wrong
+    std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), ignored);
+    core::writeMaps(file, maps);
+  } catch (const core::Error& e) {
+    if (namedByUser) throw;
+    spdlog::warn("{}; going on with the maps in memory (set XDG_CACHE_HOME or --maps to keep them)", e.what());
+  }
+}
+
+core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options, const BakeRequest& bake,
+                               std::uint64_t key, const std::stop_token& stop) {
+  ProgressBar bar("baking");
+  raytrace::BakeOptions bakeOptions;
+  bakeOptions.quality = raytrace::qualityByName(options.quality);
+  bakeOptions.photons = options.photons;
+  bakeOptions.seed = bake.seed;
+  bakeOptions.threads = bake.threads;
+  core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, w.scene, std::move(atlas), bakeOptions,
+                                                   {[&](double fraction) { bar.show(fraction); }, stop});
+  maps.key = key;
+  return maps;
+}
+
+}  // namespace
+
+std::filesystem::path mapsPath(std::uint64_t key, const SceneOptions& options, const BakeRequest& bake) {
+  if (!bake.file.empty()) return bake.file;
+  if (!options.mapsFile.empty()) return options.mapsFile;
+  return core::defaultMapsPath(key, settingsName(options, bake));
+}
+
+core::Scene loadSceneReported(const SceneOptions& options) {
+  core::Scene scene = core::loadScene(options.path, options.load);
+  printWarnings(scene.warnings);
+  return scene;
+}
+
+std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options) {
+  auto w = std::make_unique<Workspace>();
+  w->scene = loadSceneReported(options);
+  w->plan = core::makePlan(w->scene);
+  w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
+  return w;
+}
+
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop) {
+  auto w = std::make_unique<Workspace>();
+  w->scene = loadSceneReported(options);
+  w->plan = core::makePlan(w->scene);
+  const std::uint64_t key = core::sceneKey(w->scene);
+  const std::filesystem::path file = mapsPath(key, options, bake);
+  const bool namedByUser = !bake.file.empty() || !options.mapsFile.empty();
+  std::optional<core::IlluminationMaps> found;
+  if (!bake.always) found = existingMaps(file, key, namedByUser);
+  if (found) {
+    core::applyCharts(w->scene, found->charts);
+    w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
+    w->maps = std::move(*found);
+  } else {
+    if (!bake.always) spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality, file.string());
+    raytrace::ChartAtlas atlas = raytrace::makeCharts(w->scene, w->plan, kMaxAtlasSize);
+    core::applyCharts(w->scene, atlas.charts);
+    w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
+    w->maps = bakeNow(*w, std::move(atlas), options, bake, key, stop);
+    store(file, w->maps, namedByUser);
+  }
+  w->world->setMaps(&w->maps);
+  return w;
+}
+
+}  // namespace saccade::app

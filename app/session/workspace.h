@@ -1,0 +1,49 @@
+// A scene made ready to walk: loaded, charted, its maps read or baked, its ray-tracing world built.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/cli/options.h"
+#include "core/maps.h"
+#include "core/progress.h"
+#include "core/scene/plan.h"
+#include "core/scene/scene.h"
+#include "raytrace/world.h"
+
+namespace saccade::app {
+
+/// Not copyable: the world refers to scene and maps. Read-only after opening; any thread may read it.
+struct Workspace {
+  core::Scene scene;  ///< charted
+  core::Plan plan;
+  core::IlluminationMaps maps;
+  std::unique_ptr<raytrace::World> world;
+
+  Workspace() = default;
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+};
+
+struct BakeRequest {
+  std::filesystem::path file;  ///< where the maps go; empty = the cache folder
+  bool always = false;         ///< bake even when a valid file exists (the `bake` command)
+  int threads = 1;             ///< 0 = inline
+  std::uint32_t seed = 1;
+};
+
+/// Loads the scene and prints its warnings. Throws core::Error.
+core::Scene loadSceneReported(const SceneOptions& options);
+
+/// Loads, charts, reads or bakes the maps (with a progress bar, saying so) and builds the world. Throws core::Error.
+/// `stop` ends a bake early with an error.
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop);
+
+/// Scene and world without maps: what `path` and `info` need. The world has no maps set.
+std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options);
+
+/// The file that openWorkspace uses for maps of this key.
+std::filesystem::path mapsPath(std::uint64_t key, const SceneOptions& options, const BakeRequest& bake);
+
+}  // namespace saccade::app

@@ -1,0 +1,179 @@
+// The command line as a stranger and a script meet it: exit statuses, one error line, names that others rely on.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/image_io.h"
+#include "tests/unit/app/fixtures.h"
+
+namespace saccade {
+namespace {
+
+struct Ran {
+  int status = -1;
+  std::string out, err;
+};
+
+std::string slurp(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Runs `saccade ARGUMENTS` through the shell, with its own cache folder.
+Ran saccade(const std::string& arguments) {
+  const std::filesystem::path errors = tests::temporaryFolder() / "stderr.txt";
+  const std::string command = "XDG_CACHE_HOME='" + (tests::temporaryFolder() / "cache").string() + "' '" SACCADE_BINARY "' " +
+                              arguments + " 2>'" + errors.string() + "'";
+  Ran ran;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer{};
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) ran.out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  ran.err = slurp(errors);
+  return ran;
+}
+
+std::string quoted(const std::filesystem::path& file) { return "'" + file.string() + "'"; }
+std::filesystem::path output(const std::string& name) { return tests::temporaryFolder() / name; }
+
+const std::string kCornell = quoted(tests::bundled("cornell.glb"));
+const std::string kQuick = " --quality preview --size 96x64 ";
+
+int errorLines(const std::string& err) {
+  int n = 0;
+  for (std::size_t at = err.find("saccade: error: "); at != std::string::npos; at = err.find("saccade: error: ", at + 1)) ++n;
+  return n;
+}
+
+TEST(Cli, WrongUsageIsStatusTwoWithAHint) {
+  for (const char* arguments : {"", "frobnicate", "render", "render a.glb", "render a.glb -o b.png --frobnicate",
+                                "info a.glb --unit-scale 0", "render a.glb -o b.png --size 12", "render a.glb -o b.txt",
+                                "render a.glb -o b.png --order sideways", "render a.glb -o b.png --samples 3 --converge"}) {
+    const Ran ran = saccade(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.err;
+    EXPECT_EQ(errorLines(ran.err), 1) << arguments << "\n" << ran.err;
+    EXPECT_NE(ran.err.find("--help"), std::string::npos) << ran.err;
+  }
+}
+
+TEST(Cli, FailuresAreStatusOneAndOneLine) {
+  const std::filesystem::path empty = output("empty.glb");
+  std::ofstream(empty).close();
+  for (const std::string& arguments :
+       {std::string("info /no/such/scene.glb"), "info " + quoted(empty), "render /no/such.obj -o " + quoted(output("x.png")),
+        "render " + kCornell + " -o /no/such/folder/x.png" + kQuick}) {
+    const Ran ran = saccade(arguments);
+    EXPECT_EQ(ran.status, 1) << arguments << "\n" << ran.err;
+    EXPECT_EQ(errorLines(ran.err), 1) << arguments << "\n" << ran.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(output("x.png")));
+}
+
+TEST(Cli, HelpNamesEveryCommandAndEveryOptionHasText) {
+  const Ran ran = saccade("--help");
+  EXPECT_EQ(ran.status, 0);
+  for (const char* command : {"info", "bake", "render", "walk", "compare"}) {
+    EXPECT_NE(ran.out.find(command), std::string::npos);
+    const Ran help = saccade(std::string(command) + " --help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_GT(help.out.size(), 200u) << command;
+  }
+}
+
+TEST(Cli, InfoAsJsonHasThePromisedKeys) {
+  const Ran ran = saccade("info " + kCornell + " --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const nlohmann::json json = nlohmann::json::parse(ran.out);
+  for (const char* key : {"objects", "triangles", "materials", "lights", "cameras", "bounds", "warnings", "plan"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const auto& line : json["plan"]) {
+    EXPECT_TRUE(line.contains("stage") && line["on"].is_boolean() && !line["reason"].get<std::string>().empty());
+  }
+}
+
+TEST(Cli, RenderBakesByItselfOnceAndConvergesToRaytrace) {
+  const Ran first = saccade("render " + kCornell + kQuick + "--method corrective --converge -o " + quoted(output("c.exr")) +
+                            " --stats " + quoted(output("c.json")));
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_NE(first.err.find("baking"), std::string::npos) << "says so: " << first.err;
+  const Ran second = saccade("render " + kCornell + kQuick + "--method raytrace -o " + quoted(output("r.exr")));
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_EQ(second.err.find("baking"), std::string::npos) << "the maps were there: " << second.err;
+  const Ran compared = saccade("compare --json " + quoted(output("r.exr")) + " " + quoted(output("c.exr")));
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  const nlohmann::json json = nlohmann::json::parse(compared.out);
+  for (const char* key : {"rmse", "relmse", "psnr", "ssim", "flip", "flip_median", "flip_p95", "max_abs"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(json["max_abs"].get<double>(), 0);
+  const nlohmann::json stats = nlohmann::json::parse(slurp(output("c.json")));
+  for (const char* key : {"frame_ms", "missed_deadlines", "frames", "samples", "levels", "nondiffuse_pixels", "rays",
+                          "rays_per_second", "stages_ms", "peak_bytes", "converged", "seed", "threads", "context", "renderer"}) {
+    EXPECT_TRUE(stats.contains(key)) << key;
+  }
+  EXPECT_EQ(stats["samples"]["traced"], stats["nondiffuse_pixels"]);
+  EXPECT_TRUE(stats["converged"].get<bool>());
+}
+
+TEST(Cli, EveryMethodAndAovWritesAPicture) {
+  for (const char* extra : {"--method base", "--method path --spp 2", "--aov id", "--aov level", "--aov thread", "--aov age",
+                            "--aov saliency", "--samples 50", "--budget-ms 5", "--lobes diffuse --method path --spp 1"}) {
+    for (const char* name : {"picture.png", "picture.exr"}) {
+      std::filesystem::remove(output(name));
+      const Ran ran = saccade("render " + kCornell + kQuick + extra + " -o " + quoted(output(name)));
+      ASSERT_EQ(ran.status, 0) << extra << "\n" << ran.err;
+      EXPECT_TRUE(std::filesystem::exists(output(name))) << extra;
+    }
+  }
+}
+
+TEST(Cli, PathsMayHoldSpacesAndOtherAlphabets) {
+  const std::filesystem::path folder = output("Räume und 部屋");
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(tests::bundled("cornell.glb"), folder / "ein Raum.glb",
+                             std::filesystem::copy_options::overwrite_existing);
+  const Ran ran = saccade("render " + quoted(folder / "ein Raum.glb") + kQuick + "--method base -o " + quoted(folder / "Bild é.png"));
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "Bild é.png"));
+}
+
+TEST(Cli, WalkOffScreenWritesFramesAndStats) {
+  const std::filesystem::path frames = output("frames");
+  const Ran ran = saccade("walk " + kCornell + kQuick + "--headless --orbit --fps 20 --seconds 0.5 --frames " + quoted(frames) +
+                          " --converge -o " + quoted(output("last.exr")) + " --stats " + quoted(output("walk.json")));
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(frames), {}), 10);
+  EXPECT_EQ(core::readImage8(frames / "frame_00009.png").width(), 96);
+  const nlohmann::json stats = nlohmann::json::parse(slurp(output("walk.json")));
+  EXPECT_TRUE(stats["converged"].get<bool>());
+  EXPECT_EQ(stats["frames"], 11);
+}
+
+TEST(Cli, CompareTellsSizesAndKindsApart) {
+  core::writeExr(output("a.exr"), core::ImageRgb(4, 4, core::Vec3(1)));
+  core::writeExr(output("b.exr"), core::ImageRgb(5, 4, core::Vec3(1)));
+  core::writePng(output("a.png"), core::ImageRgba8(4, 4));
+  EXPECT_EQ(saccade("compare " + quoted(output("a.exr")) + " " + quoted(output("b.exr"))).status, 1);
+  EXPECT_EQ(saccade("compare " + quoted(output("a.exr")) + " " + quoted(output("a.png"))).status, 2);
+  EXPECT_EQ(saccade("compare " + quoted(output("a.exr")) + " " + quoted(output("a.exr"))).status, 0);
+}
+
+TEST(Cli, MapsOfAnotherSceneAreRefusedNotOverwritten) {
+  const std::filesystem::path maps = output("cornell.maps");
+  ASSERT_EQ(saccade("bake " + kCornell + " --quality preview --photons 20000 -o " + quoted(maps)).status, 0);
+  const auto before = std::filesystem::last_write_time(maps);
+  const Ran ran = saccade("render " + quoted(tests::bundled("table.glb")) + kQuick + "--maps " + quoted(maps) +
+                          " --method base -o " + quoted(output("t.png")));
+  EXPECT_EQ(ran.status, 1) << ran.err;
+  EXPECT_EQ(std::filesystem::last_write_time(maps), before);
+}
+
+}  // namespace
+}  // namespace saccade

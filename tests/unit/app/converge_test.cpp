@@ -1,0 +1,198 @@
+// The product's promise: corrections through queues and splats end at the ray-traced image, bit for bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "app/session/camera_path.h"
+#include "tests/unit/app/fixtures.h"
+
+namespace saccade {
+namespace {
+
+using app::FrameBudget;
+using app::FrameLoop;
+using app::FrameLoopOptions;
+using app::ImageSize;
+
+struct SceneCase {
+  const char* name;
+  bool shared;       ///< under the shared folder
+  float unitScale = 1;
+};
+
+void PrintTo(const SceneCase& c, std::ostream* os) { *os << c.name; }
+
+const SceneCase kScenes[] = {{"cornell.glb", false},
+                             {"table.glb", false},
+                             {"gallery.glb", false},
+                             {"scenes/cornell/CornellBox-Sphere.obj", true},
+                             {"scenes/rooms/glass-table.glb", true},
+                             {"references/cycles/cornell_glossy.glb", true}};
+
+std::filesystem::path pathOf(const SceneCase& c) {
+  return c.shared ? tests::sharedFolder() / c.name : tests::bundled(c.name);
+}
+
+class Converge : public testing::TestWithParam<std::tuple<SceneCase, const char*>> {};
+
+TEST_P(Converge, EqualsRayTracedOnAnyNumberOfThreads) {
+  const auto& [scene, context] = GetParam();
+  if (scene.shared) {
+    SACCADE_SHARED_FILE(file, scene.name);
+  }
+  const app::Workspace& workspace = tests::workspaceOf(pathOf(scene), scene.unitScale);
+  app::Headless gl(tests::runOn(context), workspace);
+  const ImageSize size{320, 240};
+  for (const int threads : {0, 1, 2, 8}) {
+    SCOPED_TRACE("threads " + std::to_string(threads));
+    FrameLoopOptions options;
+    options.threads = threads;
+    FrameLoop loop(workspace, *gl.renderer, options);
+    loop.step(workspace.scene.cameras[0], size, FrameBudget::untilConverged());
+    ASSERT_TRUE(loop.converged());
+    EXPECT_GT(loop.frame().nonDiffusePixels, 0u);
+    EXPECT_EQ(loop.stats().samplesTraced, loop.frame().nonDiffusePixels);
+    EXPECT_GE(tests::levelsThatOccur(loop.stats()), 3);
+    EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace, loop.frame())), 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Converge,
+                         testing::Combine(testing::ValuesIn(kScenes), testing::Values("osmesa", "egl")));
+
+/// cornell, off screen, small.
+class LoopTest : public testing::Test {
+ protected:
+  const app::Workspace& workspace_ = tests::workspaceOf(tests::bundled("cornell.glb"));
+  app::Headless gl_{tests::runOn("osmesa"), workspace_};
+  core::Camera camera_ = workspace_.scene.cameras[0];
+  ImageSize size_{200, 150};
+
+  core::ImageRgb converge(FrameLoop& loop) {
+    loop.step(camera_, size_, FrameBudget::untilConverged());
+    EXPECT_TRUE(loop.converged());
+    return loop.linear();
+  }
+};
+
+TEST_F(LoopTest, APerturbedSampleIsSeenInTheConvergedImage) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+  bool perturbed = false;
+  loop.onBatch = [&](core::SampleBatch& batch) {
+    if (perturbed || batch.samples.empty()) return;
+    batch.samples.front().correction.x += 0.25f;
+    perturbed = true;
+  };
+  const core::ImageRgb image = converge(loop);
+  ASSERT_TRUE(perturbed);
+  EXPECT_GT(tests::largestDifference(image, tests::rayTraced(workspace_, loop.frame())), 0.2f);
+}
+
+TEST_F(LoopTest, ShuffledArrivalGivesTheSameImageAtEveryMoment) {
+  // The same samples in another order: within each batch, and the batches of a frame reversed by the sample budget's cut.
+  FrameLoop ordered(workspace_, *gl_.renderer, {.threads = 0});
+  FrameLoop shuffled(workspace_, *gl_.renderer, {.threads = 0});
+  std::mt19937 random(7);
+  shuffled.onBatch = [&](core::SampleBatch& batch) { std::shuffle(batch.samples.begin(), batch.samples.end(), random); };
+  for (int i = 0; i < 4; ++i) {
+    ordered.step(camera_, size_, FrameBudget::firstSamples(300));
+    shuffled.step(camera_, size_, FrameBudget::firstSamples(300));
+    EXPECT_EQ(tests::largestDifference(ordered.linear(), shuffled.linear()), 0);
+  }
+}
+
+TEST_F(LoopTest, TheFirstSamplesAreTheSameOnAnyNumberOfThreads) {
+  FrameLoop reference(workspace_, *gl_.renderer, {.threads = 0});
+  reference.step(camera_, size_, FrameBudget::firstSamples(777));
+  EXPECT_EQ(reference.stats().samplesTraced, 777u);
+  const core::ImageRgb expected = reference.linear();
+  for (const int threads : {1, 2, 8}) {
+    FrameLoop loop(workspace_, *gl_.renderer, {.threads = threads});
+    loop.step(camera_, size_, FrameBudget::firstSamples(777));
+    EXPECT_EQ(loop.stats().samplesTraced, 777u);
+    EXPECT_EQ(loop.stats().levels, reference.stats().levels);
+    EXPECT_EQ(tests::largestDifference(loop.linear(), expected), 0) << threads << " threads";
+  }
+}
+
+TEST_F(LoopTest, SampleBudgetsOfSeveralFramesAddUpToConvergence) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 2});
+  for (int i = 0; i < 1000 && !loop.converged(); ++i) loop.step(camera_, size_, FrameBudget::firstSamples(501));
+  ASSERT_TRUE(loop.converged());
+  EXPECT_EQ(loop.stats().samplesTraced, loop.frame().nonDiffusePixels);
+  EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
+}
+
+class Walk : public LoopTest, public testing::WithParamInterface<int> {};
+
+TEST_P(Walk, OfSixtyFramesThenRestEqualsRayTraced) {
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = GetParam(), .asynchronousAnalysis = GetParam() > 0});
+  for (int i = 59; i >= 0; --i) {
+    loop.step(path.at(i / 25.0), size_, FrameBudget::untilDeadline(std::chrono::milliseconds(5)));
+  }
+  EXPECT_GT(loop.stats().samplesReused, 0u);
+  const std::uint64_t tracedWhileWalking = loop.stats().samplesTraced;
+  const std::uint32_t exactBefore = loop.layer().exactCount();
+  loop.step(camera_, size_, FrameBudget::untilConverged());
+  ASSERT_TRUE(loop.converged());
+  EXPECT_EQ(loop.stats().samplesTraced - tracedWhileWalking, loop.frame().nonDiffusePixels - exactBefore);
+  EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
+}
+INSTANTIATE_TEST_SUITE_P(Threads, Walk, testing::Values(0, 1, 2, 8));
+
+TEST_F(LoopTest, AnInlineWalkRepeatsExactly) {
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  std::vector<core::ImageRgba8> first;
+  for (int run = 0; run < 2; ++run) {
+    FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+    for (int i = 0; i < 8; ++i) {
+      loop.step(path.at(i / 25.0), size_, FrameBudget::untilDeadline(std::chrono::milliseconds(2)));
+      if (run == 0) {
+        first.push_back(loop.display());
+      } else {
+        EXPECT_EQ(loop.display().pixels(), first[static_cast<std::size_t>(i)].pixels()) << "frame " << i;
+      }
+    }
+  }
+}
+
+TEST_F(LoopTest, NothingIsDrawnAgainWhileNothingMoves) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+  loop.step(camera_, size_, FrameBudget::firstSamples(10));
+  const core::FrameSnapshot* frame = &loop.frame();
+  loop.step(camera_, size_, FrameBudget::firstSamples(10));
+  EXPECT_EQ(&loop.frame(), frame);
+  camera_.eye.x += 0.01f;
+  loop.step(camera_, size_, FrameBudget::firstSamples(10));
+  EXPECT_GT(loop.frame().epoch, 1u);
+}
+
+TEST_F(LoopTest, NoOutputHoldsNaN) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+  for (const core::Vec3& pixel : converge(loop).pixels()) {
+    ASSERT_TRUE(std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z));
+  }
+}
+
+TEST_F(LoopTest, AStopRequestEndsAConvergingFrame) {
+  std::stop_source stop;
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+  loop.onBatch = [&](core::SampleBatch&) { stop.request_stop(); };
+  loop.step(camera_, size_, FrameBudget::untilConverged(), stop.get_token());
+  EXPECT_FALSE(loop.converged());
+}
+
+TEST_F(LoopTest, SizesFromOnePixelUp) {
+  for (const ImageSize size : {ImageSize{1, 1}, ImageSize{3, 5}, ImageSize{513, 2}}) {
+    FrameLoop loop(workspace_, *gl_.renderer, {.threads = 2});
+    loop.step(camera_, size, FrameBudget::untilConverged());
+    EXPECT_TRUE(loop.converged());
+    EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
+  }
+}
+
+}  // namespace
+}  // namespace saccade
