@@ -13,8 +13,11 @@ namespace saccade::raytrace {
 namespace {
 
 constexpr double kConeCosine = 0.766;      // 40 degrees from the chart's axis
+constexpr double kLeftoverCosine = 0.616;  // 52 degrees for what remains between charts
+constexpr double kLeftoverShare = 0.125;   // of a neighbour's area: a smaller chart is a leftover
 constexpr double kDihedralCosine = 0.643;  // 50 degrees: a sharper edge ends a chart
 constexpr float kCreaseCosine = 0.906f;    // 25 degrees between shading normals at an edge's ends: a crease
+constexpr double kNeedle = 1e-6;           // height over base below which a triangle has no normal in fp32
 constexpr double kHollowFill = 0.35;       // charts that fill less of their rectangle are halved
 constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -40,7 +43,6 @@ class Topology {
   const core::Mesh& mesh() const { return mesh_; }
   const glm::dvec3& normal(std::uint32_t t) const { return normal_[t]; }  ///< unit, zero if degenerate
   double area(std::uint32_t t) const { return area_[t]; }                 ///< m^2, zero if degenerate
-  bool finite(std::uint32_t t) const { return finite_[t] != 0; }
   std::uint32_t neighbour(std::uint32_t t, int edge) const { return neighbour_[3 * t + edge]; }
   const core::Vec3& position(std::uint32_t t, int corner) const {
     return mesh_.positions[mesh_.indices[3 * t + corner]];
@@ -66,15 +68,13 @@ class Topology {
   void measure() {
     normal_.assign(count_, glm::dvec3(0));
     area_.assign(count_, 0);
-    finite_.assign(count_, 0);
     for (std::uint32_t t = 0; t < count_; ++t) {
       const glm::dvec3 a = position(t, 0), e = glm::dvec3(position(t, 1)) - a,
                        f = glm::dvec3(position(t, 2)) - a;
       const glm::dvec3 n = glm::cross(e, f);
       const double length = glm::length(n);
-      finite_[t] = std::isfinite(length) && std::isfinite(glm::dot(a, a));
       const double longest = std::max({glm::dot(e, e), glm::dot(f, f), glm::dot(e - f, e - f)});
-      if (!finite_[t] || !(length > 1e-9 * longest)) continue;
+      if (!std::isfinite(length) || !std::isfinite(glm::dot(a, a)) || !(length > kNeedle * longest)) continue;
       normal_[t] = n / length;
       area_[t] = 0.5 * length;
     }
@@ -90,7 +90,7 @@ class Topology {
     edges.reserve(3 * count_);
     for (std::uint32_t c = 0; c < 3 * count_; ++c) {
       const std::uint32_t a = welded_[mesh_.indices[c]], b = welded_[mesh_.indices[next(c)]];
-      if (a != b && finite_[c / 3]) edges.push_back({std::min(a, b), std::max(a, b), c, a < b});
+      if (area_[c / 3] > 0 && a != b) edges.push_back({std::min(a, b), std::max(a, b), c, a < b});
     }
     std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
       return x.lo != y.lo ? x.lo < y.lo : x.hi != y.hi ? x.hi < y.hi : x.corner < y.corner;
@@ -108,7 +108,6 @@ class Topology {
 
   bool smooth(const Edge& a, const Edge& b) const {
     const std::uint32_t s = a.corner / 3, t = b.corner / 3;
-    if (area_[s] == 0 || area_[t] == 0) return true;
     if (glm::dot(normal_[s], normal_[t]) < kDihedralCosine) return false;
     if (mesh_.normals.empty()) return true;
     const auto shading = [&](std::uint32_t corner) { return mesh_.normals[mesh_.indices[corner]]; };
@@ -123,7 +122,6 @@ class Topology {
   std::vector<std::uint32_t> welded_;  ///< vertex -> first vertex at the same place
   std::vector<glm::dvec3> normal_;
   std::vector<double> area_;
-  std::vector<char> finite_;
   std::vector<std::uint32_t> neighbour_;  ///< across edge e of triangle t: [3 t + e], kNone at borders
 };
 
@@ -153,48 +151,107 @@ std::vector<std::vector<std::uint32_t>> connectedParts(const Topology& mesh,
   return parts;
 }
 
-/// Grows charts from the largest triangles outwards.
+/// Grows charts from the largest triangles outwards, then shares out the leftovers between them.
 class Grower {
  public:
-  explicit Grower(const Topology& mesh) : mesh_(mesh), taken_(mesh.count(), 0) {}
+  explicit Grower(const Topology& mesh) : mesh_(mesh), owner_(mesh.count(), kNone) {}
 
-  std::vector<Chart> grow() {
+  std::vector<Chart> grow(std::vector<std::uint32_t>& mark) {
     std::vector<std::uint32_t> seeds(mesh_.count());
     std::iota(seeds.begin(), seeds.end(), 0u);
     std::stable_sort(seeds.begin(), seeds.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return mesh_.area(a) > mesh_.area(b); });
-    std::vector<Chart> charts;
     for (const std::uint32_t seed : seeds) {
-      if (!taken_[seed]) charts.push_back(growFrom(seed));
+      if (owner_[seed] == kNone && mesh_.area(seed) > 0) growFrom(seed);
     }
-    return charts;
+    shareLeftovers();
+    return collect(mark);
   }
 
  private:
-  Chart growFrom(std::uint32_t seed) {
+  void growFrom(std::uint32_t seed) {
     Chart chart;
-    const glm::dvec3 axis = mesh_.area(seed) > 0 ? mesh_.normal(seed) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 axis = mesh_.normal(seed);
     const glm::dvec3 helper = std::abs(axis.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     chart.u = glm::normalize(glm::cross(helper, axis));
     chart.v = glm::cross(axis, chart.u);
-    chart.origin = mesh_.finite(seed) ? mesh_.centroid(seed) : glm::dvec3(0);
-    chart.triangles.push_back(seed);
-    taken_[seed] = 1;
-    for (std::size_t head = 0; head < chart.triangles.size(); ++head) {
+    chart.origin = mesh_.centroid(seed);
+    const auto self = static_cast<std::uint32_t>(charts_.size());
+    std::vector<std::uint32_t> members{seed};
+    owner_[seed] = self;
+    double area = 0;
+    for (std::size_t head = 0; head < members.size(); ++head) {
+      area += mesh_.area(members[head]);
       for (int e = 0; e < 3; ++e) {
-        const std::uint32_t n = mesh_.neighbour(chart.triangles[head], e);
-        if (n == kNone || taken_[n]) continue;
-        if (mesh_.area(n) > 0 && glm::dot(mesh_.normal(n), axis) < kConeCosine) continue;
-        taken_[n] = 1;
-        chart.triangles.push_back(n);
+        const std::uint32_t n = mesh_.neighbour(members[head], e);
+        if (n == kNone || owner_[n] != kNone) continue;
+        if (glm::dot(mesh_.normal(n), axis) < kConeCosine) continue;
+        owner_[n] = self;
+        members.push_back(n);
       }
     }
-    std::sort(chart.triangles.begin(), chart.triangles.end());
-    return chart;
+    charts_.push_back(chart);
+    axis_.push_back(axis);
+    area_.push_back(area);
+  }
+
+  /// Growth leaves slivers where round charts meet: their triangles go, one by one, to the adjoining large
+  /// chart that faces them best, within a wider cone.
+  void shareLeftovers() {
+    std::vector<char> leftover(charts_.size(), 0);
+    for (std::uint32_t t = 0; t < mesh_.count(); ++t) {
+      for (int e = 0; e < 3; ++e) {
+        const std::uint32_t n = mesh_.neighbour(t, e);
+        if (n != kNone && area_[owner_[t]] < kLeftoverShare * area_[owner_[n]]) leftover[owner_[t]] = 1;
+      }
+    }
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::uint32_t t = 0; t < mesh_.count(); ++t) {
+        if (owner_[t] != kNone && leftover[owner_[t]]) changed |= joinNeighbour(t, leftover);
+      }
+    }
+  }
+
+  bool joinNeighbour(std::uint32_t t, const std::vector<char>& leftover) {
+    std::uint32_t best = kNone;
+    double bestCosine = kLeftoverCosine;
+    for (int e = 0; e < 3; ++e) {
+      const std::uint32_t n = mesh_.neighbour(t, e);
+      if (n == kNone || leftover[owner_[n]]) continue;
+      const double cosine = glm::dot(mesh_.normal(t), axis_[owner_[n]]);
+      if (cosine > bestCosine) {
+        bestCosine = cosine;
+        best = owner_[n];
+      }
+    }
+    if (best != kNone) owner_[t] = best;
+    return best != kNone;
+  }
+
+  /// What is left of a leftover may have fallen apart: every chart is one connected part.
+  std::vector<Chart> collect(std::vector<std::uint32_t>& mark) {
+    Chart degenerate;
+    for (std::uint32_t t = 0; t < mesh_.count(); ++t) {
+      (owner_[t] == kNone ? degenerate : charts_[owner_[t]]).triangles.push_back(t);
+    }
+    std::vector<Chart> out;
+    if (!degenerate.triangles.empty()) out.push_back(degenerate);
+    for (Chart& chart : charts_) {
+      for (auto& part : connectedParts(mesh_, chart.triangles, mark)) {
+        Chart c = chart;
+        c.triangles = std::move(part);
+        out.push_back(std::move(c));
+      }
+    }
+    return out;
   }
 
   const Topology& mesh_;
-  std::vector<char> taken_;
+  std::vector<std::uint32_t> owner_;  ///< triangle -> chart
+  std::vector<Chart> charts_;
+  std::vector<glm::dvec3> axis_;
+  std::vector<double> area_;
 };
 
 /// Turns the chart's plane so that its bounding rectangle is small, longer side along u.
@@ -202,7 +259,7 @@ void fitRectangle(const Topology& mesh, Chart& chart) {
   std::vector<glm::dvec2> points;
   glm::dvec2 longest(1, 0);
   for (const std::uint32_t t : chart.triangles) {
-    if (!mesh.finite(t)) continue;
+    if (mesh.area(t) == 0) continue;
     glm::dvec2 p[3];
     for (int c = 0; c < 3; ++c) points.push_back(p[c] = chart.project(mesh.position(t, c)));
     for (int c = 0; c < 3; ++c) {
@@ -234,7 +291,7 @@ void fitRectangle(const Topology& mesh, Chart& chart) {
   chart.u = u;
   bool first = true;
   for (const std::uint32_t t : chart.triangles) {
-    for (int c = 0; c < 3 && mesh.finite(t); ++c) {
+    for (int c = 0; c < 3 && mesh.area(t) > 0; ++c) {
       const glm::dvec2 q = chart.project(mesh.position(t, c));
       chart.lo = first ? q : glm::min(chart.lo, q);
       chart.hi = first ? q : glm::max(chart.hi, q);
@@ -255,7 +312,6 @@ bool overlapsItself(const Topology& mesh, const Chart& chart) {
   constexpr double kFull = 1.01;
   bool overlap = false;
   for (const std::uint32_t t : chart.triangles) {
-    if (mesh.area(t) == 0) continue;
     glm::dvec2 p[3];
     for (int c = 0; c < 3; ++c) p[c] = (chart.project(mesh.position(t, c)) - chart.lo) * scale;
     forEachCell(p[0], p[1], p[2], width, height, [&](int x, int y, double area) {
@@ -277,9 +333,7 @@ double projectedArea(const Topology& mesh, const Chart& chart) {
 std::vector<Chart> halve(const Topology& mesh, const Chart& chart, const glm::dvec3& direction,
                          std::vector<std::uint32_t>& mark) {
   std::vector<std::uint32_t> order = chart.triangles;
-  const auto key = [&](std::uint32_t t) {
-    return mesh.finite(t) ? glm::dot(mesh.centroid(t) - chart.origin, direction) : 0.0;
-  };
+  const auto key = [&](std::uint32_t t) { return glm::dot(mesh.centroid(t) - chart.origin, direction); };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
@@ -303,8 +357,8 @@ std::vector<Chart> clusterMesh(const core::Mesh& mesh) {
   double total = 0;
   for (std::uint32_t t = 0; t < topology.count(); ++t) total += topology.area(t);
   const double worthHalving = total / 256;  // hollow charts smaller than this waste little
-  std::vector<Chart> pending = Grower(topology).grow(), done;
   std::vector<std::uint32_t> mark(topology.count(), kNone);
+  std::vector<Chart> pending = Grower(topology).grow(mark), done;
   for (std::size_t i = 0; i < pending.size(); ++i) {
     Chart chart = std::move(pending[i]);
     fitRectangle(topology, chart);

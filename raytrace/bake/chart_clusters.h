@@ -21,8 +21,8 @@ struct Chart {
   }
 };
 
-/// Every triangle is in exactly one chart; degenerate ones (zero area, non-finite) go with a neighbour or
-/// alone. Charts turn so that their bounding rectangle is small; hollow ones (a window frame) are halved.
+/// Every triangle is in exactly one chart; degenerate ones (no area, non-finite) share one chart without
+/// extent. Charts turn so that their bounding rectangle is small; hollow ones (a window frame) are halved.
 std::vector<Chart> clusterMesh(const core::Mesh& mesh);
 
 }  // namespace saccade::raytrace

@@ -2,8 +2,9 @@
 // section 4: illumination maps stored as textures).
 //
 // A chart is a connected set of triangles whose normals lie within 40 degrees of its axis, projected along
-// the axis, so areas shrink by at most a quarter. Charts are stretched to whole texels (a chart's rectangle
-// side is rounded), so that straight walls end at a texel's border and no texel is covered by a sliver only.
+// the axis, so areas shrink by at most a quarter (a few triangles where charts meet lie within 52: by four
+// tenths). Charts are stretched to whole texels (a chart's rectangle side is rounded), so that straight walls
+// end at a texel's border and no texel is covered by a sliver only.
 #pragma once
 
 #include <cstddef>
