@@ -35,8 +35,9 @@ struct BsdfSample {
 /// critical angle.
 float fresnelDielectric(float cosI, float eta);
 
-/// GGX, alpha > 0; angles by cosine to the normal.
-float ggxD(float cosH, float alpha);
+/// GGX density of facet normals, alpha > 0, h unit in the local frame (x and y carry the precision near the
+/// pole).
+float ggxD(const Vec3& h, float alpha);
 /// Smith's Lambda.
 float ggxLambda(float cosV, float alpha);
 /// Visible normal (Heitz 2018) for a view direction in the local frame, v.z > 0.
@@ -106,7 +107,7 @@ class Bsdf {
   Vec3 baseColor_{0};
   float lambdaV_ = 0;
   float diffuseShare_ = 0;  ///< probability of D when all lobes are sampled
-  bool thin_ = false, delta_ = false, specularAny_ = false, diffuseAny_ = false;
+  bool thin_ = false, straight_ = false, delta_ = false, specularAny_ = false, diffuseAny_ = false;
 };
 
 }  // namespace saccade::raytrace

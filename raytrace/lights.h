@@ -88,6 +88,7 @@ class Lights {
     std::uint32_t group;
     float area;
     float choiceInGroup;  ///< probability
+    Vec3 normal;          ///< unit
     bool doubleSided;
   };
   struct Group {

@@ -15,7 +15,7 @@ struct TextureView {
   int width = 0, height = 0;
   core::Wrap wrapS = core::Wrap::repeat, wrapT = core::Wrap::repeat;
   bool nearest = false;
-  bool srgb = false;
+  const float* decode = nullptr;  ///< byte to linear colour, 256 entries
   std::uint8_t uvSet = 0;
 
   explicit operator bool() const { return texels != nullptr; }

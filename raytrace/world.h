@@ -74,14 +74,16 @@ class World {
   const CompiledMaterial& material(std::uint32_t index) const { return materials_[index]; }
   std::size_t triangleCount() const { return records_.size(); }
   std::uint32_t firstTriangle(std::uint32_t object) const { return firstTriangle_[object]; }
-  bool closed(std::uint32_t object) const { return closed_[object]; }
+  bool closed(std::uint32_t object) const { return flags_[object] & kClosed; }
+  bool hasColors(std::uint32_t object) const { return flags_[object] & kColors; }
   /// ID mask value (1..idCount) to object index; throws core::Error for an unknown id.
   std::uint32_t objectOfId(std::uint32_t id) const;
-  bool diffuse(std::uint32_t object) const { return scene_.objects[object].id == 0; }
+  bool diffuse(std::uint32_t object) const { return flags_[object] & kDiffuse; }
 
  private:
   friend std::uint64_t replayRays(const World& world, const RayLog& log);
   struct Embree;
+  enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4 };
   void buildRecords();
   void buildTrees();
 
@@ -91,7 +93,7 @@ class World {
   std::vector<TriangleRecord> records_;
   std::vector<TriangleShape> shapes_;
   std::vector<std::uint32_t> firstTriangle_;  ///< by object, one more at the end
-  std::vector<std::uint8_t> closed_;
+  std::vector<std::uint8_t> flags_;           ///< by object
   std::vector<std::uint32_t> objectOfId_;
   std::vector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves
   int mapWidth_ = 0, mapHeight_ = 0, mapLayers_ = 0;

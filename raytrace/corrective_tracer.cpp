@@ -1,0 +1,265 @@
+#include "raytrace/corrective_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/math/random.h"
+#include "raytrace/bsdf.h"
+#include "raytrace/lights.h"
+#include "raytrace/surface.h"
+
+namespace saccade::raytrace {
+namespace {
+
+/// Both branches of a smooth dielectric are followed at the first hits while each matters; later one is
+/// drawn.
+constexpr int kSplitDepth = 2;
+constexpr float kSplitWeight = 0.01f;
+/// Beyond the first hit, a branch lighter than this survives with probability weight / kRouletteWeight.
+constexpr float kRouletteWeight = 0.1f;
+/// Shadow rays whose contribution to the pixel cannot exceed this (radiance) are drawn likewise.
+constexpr float kFaintLight = 0.02f;
+/// Blended layers that one ray passes.
+constexpr int kMaxLayers = 64;
+/// A point of the depth buffer that faces away is shaded as if seen this far above its horizon (a cosine).
+constexpr float kGrazing = 0.01f;
+
+float largest(const Vec3& c) { return std::max({c.x, c.y, c.z}); }
+
+float powerHeuristic(float a, float b) {
+  const float a2 = a * a, b2 = b * b;
+  return a2 > 0 ? a2 / (a2 + b2) : 0;
+}
+
+/// How a rough ray was made, for the weight of the light it may hit.
+struct RoughRay {
+  const LightChoice* choice = nullptr;
+  float density = 0;  ///< rays times pdf
+};
+
+/// One pixel's one sub-sample.
+class Walk {
+ public:
+  Walk(const World& world, const CorrectiveOptions& options, core::PixelSampler sampler,
+       RayCounters& counters)
+      : world_(world), options_(options), sampler_(sampler), counters_(counters) {}
+
+  /// Radiance that the lobes other than Lambert send back along the ray. `weight`: of this branch in the
+  /// pixel.
+  Vec3 specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  /// Radiance along a ray. `rough` is null for rays of deltas.
+  Vec3 incoming(Ray ray, int depth, float weight, const RoughRay* rough);
+
+ private:
+  Vec3 reflectedAt(const Hit& hit, const Vec3& direction, int depth, float weight);
+  Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoice& choice, float rays,
+                   float weight);
+  float emissionWeight(const Hit& hit, const Vec3& direction, float distance, const RoughRay* rough) const;
+
+  const World& world_;
+  const CorrectiveOptions& options_;
+  core::PixelSampler sampler_;
+  RayCounters& counters_;
+};
+
+float Walk::emissionWeight(const Hit& hit, const Vec3& direction, float distance,
+                           const RoughRay* rough) const {
+  if (!rough) return 1;
+  return powerHeuristic(rough->density,
+                        world_.lights().pdf(*rough->choice, hit.triangle, direction, distance));
+}
+
+Vec3 Walk::incoming(Ray ray, int depth, float weight, const RoughRay* rough) {
+  Vec3 sum(0);
+  float through = 1, travelled = 0;
+  Hit hit;
+  for (int layer = 0; layer < kMaxLayers && world_.intersect(ray, hit, counters_); ++layer) {
+    travelled += hit.t;
+    const TriangleRecord& record = world_.record(hit.triangle);
+    // A diffuse hit, or the end of the specular chain: the maps' light.
+    const BaseLight base = baseLight(world_, hit, ray.direction);
+    Vec3 radiance(0);
+    if (largest(base.emitted) > 0)
+      radiance += base.emitted * emissionWeight(hit, ray.direction, travelled, rough);
+    radiance += world_.diffuse(record.object) || depth >= world_.recursionDepth()
+                    ? base.reflected
+                    : reflectedAt(hit, ray.direction, depth, weight * through * base.coverage);
+    sum += radiance * (through * base.coverage);
+    through *= 1 - base.coverage;
+    if (!(through > 0)) break;
+    ray = makeSurface(world_, hit, ray.direction).leave(ray.direction);
+  }
+  return sum;
+}
+
+Vec3 Walk::reflectedAt(const Hit& hit, const Vec3& direction, int depth, float weight) {
+  const Surface surface = makeSurface(world_, hit, direction);
+  if (!surface.scatters()) return Vec3(0);
+  if (surface.material->unlit) return surface.point.baseColor;
+  const Bsdf bsdf(surface, -direction);
+  Vec3 radiance(0);
+  if (bsdf.hasDiffuse()) {
+    radiance = bsdf.diffuseUnderMap() * world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1);
+  }
+  return radiance + specular(surface, bsdf, depth, weight);
+}
+
+Vec3 Walk::specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  if (!bsdf.hasSpecular()) return Vec3(0);
+  float compensation = 1;
+  if (depth > 0 && weight < kRouletteWeight) {
+    const float survival = weight / kRouletteWeight;
+    if (!(sampler_.next1D() < survival)) return Vec3(0);
+    compensation = 1 / survival;
+    weight = kRouletteWeight;
+  }
+  const Vec3 radiance =
+      bsdf.delta() ? deltaBranches(surface, bsdf, depth, weight) : roughRays(surface, bsdf, depth, weight);
+  return radiance * compensation;
+}
+
+Vec3 Walk::deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  const BsdfSample reflection = bsdf.deltaReflection();
+  const std::optional<BsdfSample> transmission = bsdf.deltaTransmission();
+  const auto follow = [&](const BsdfSample& s, float chance) {
+    const Vec3 factor = s.weight / chance;
+    return factor * incoming(surface.leave(s.direction), depth + 1, weight * largest(factor), nullptr);
+  };
+  if (!transmission) return follow(reflection, 1);
+  const float r = largest(reflection.weight), t = largest(transmission->weight);
+  if (depth < kSplitDepth && weight * std::min(r, t) > kSplitWeight)
+    return follow(reflection, 1) + follow(*transmission, 1);
+  const float chance = r / (r + t);
+  return sampler_.next1D() < chance ? follow(reflection, chance) : follow(*transmission, 1 - chance);
+}
+
+Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  const int count = depth == 0 ? options_.glossyRays : 1;
+  const auto rays = static_cast<float>(count);
+  // Inside a solid every light is behind its wall; only rays that leave find it.
+  const bool lights = !world_.lights().empty() && (surface.front || !surface.closed);
+  LightChoice choice;
+  Vec3 sum(0);
+  if (lights) {
+    choice = world_.lights().choose(surface.position);
+    sum = lightSample(surface, bsdf, choice, rays, weight);
+  }
+  for (int i = 0; i < count; ++i) {
+    Vec2 u = sampler_.next2D();
+    u.x = (static_cast<float>(i) + u.x) / rays;
+    const float uLobe = bsdf.transmits() ? sampler_.next1D() : 0;
+    const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, kLobeSpecular);
+    if (!s) continue;
+    const RoughRay rough{&choice, s->pdf * rays};
+    const bool plain = !lights || s->delta;
+    sum += s->weight / rays *
+           incoming(surface.leave(s->direction), depth + 1, weight * largest(s->weight) / rays,
+                    plain ? nullptr : &rough);
+  }
+  return sum;
+}
+
+Vec3 Walk::lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoice& choice, float rays,
+                       float weight) {
+  const float uLight = sampler_.next1D();
+  const Vec2 u = sampler_.next2D();
+  LightSample light;
+  if (!world_.lights().sample(choice, uLight, u, light)) return Vec3(0);
+  const Vec3 f = bsdf.eval(light.direction, kLobeSpecular);
+  if (!(largest(f) > 0)) return Vec3(0);
+  const float mis =
+      light.delta ? 1 : powerHeuristic(light.pdf, rays * bsdf.pdf(light.direction, kLobeSpecular));
+  Vec3 contribution = f * light.radiance * (mis / light.pdf);
+  const float seen = weight * largest(contribution);
+  if (seen < kFaintLight) {
+    const float survival = seen / kFaintLight;
+    if (!(sampler_.next1D() < survival)) return Vec3(0);
+    contribution /= survival;
+  }
+  return contribution * world_.transmittance(shadowRay(surface, light), counters_);
+}
+
+/// The hit of a pixel's ray on the object that the frame names, or the object's point nearest to the depth
+/// buffer's (design fact 9). False when the object has no point at all.
+bool primaryHit(const World& world, const core::FrameSnapshot& frame, std::uint32_t object, Vec2 pixel,
+                float depth, Hit& hit, bool& fromDepth, RayCounters& counters) {
+  const Ray ray{frame.view.camera().eye, frame.view.direction(pixel), 0, core::kInfinity};
+  fromDepth = !world.intersectVisible(object, ray, hit, counters);
+  return !fromDepth || world.closestPoint(object, frame.view.unproject(pixel, depth), hit);
+}
+
+/// The direction under which a point from the depth buffer is shaded: it must face the eye.
+Vec3 facingDirection(const Hit& hit, const Vec3& direction) {
+  const float length = glm::length(hit.ng);
+  if (!(length > 0)) return direction;
+  const Vec3 ng = hit.ng / length;
+  const float along = glm::dot(ng, direction);
+  return along <= -kGrazing ? direction : glm::normalize(direction - ng * (along + kGrazing));
+}
+
+bool finite(const Vec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+
+}  // namespace
+
+CorrectiveTracer::CorrectiveTracer(const World& world, const CorrectiveOptions& options)
+    : world_(world), options_(options) {
+  options_.samplesPerPixel = std::max(1, options.samplesPerPixel);
+  options_.glossyRays = std::max(1, options.glossyRays);
+}
+
+core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, int y, int level,
+                                     RayCounters& counters) const {
+  const std::size_t index = frame.index(x, y);
+  core::Sample sample;
+  sample.x = x;
+  sample.y = y;
+  sample.id = frame.idAt(x, y);
+  sample.level = static_cast<std::uint8_t>(level);
+  const Vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+  Hit hit;
+  Vec3 direction = glm::normalize(frame.view.direction(pixel));
+  if (!primaryHit(world_, frame, world_.objectOfId(sample.id), pixel, frame.depth[index], hit,
+                  sample.fromDepth, counters)) {
+    sample.position = frame.view.unproject(pixel, frame.depth[index]);
+    sample.normal = -direction;
+    sample.cosView = 1;
+    sample.viewDepth = frame.view.viewDepth(frame.depth[index]);
+    return sample;
+  }
+  if (sample.fromDepth) direction = facingDirection(hit, direction);
+  const Surface surface = makeSurface(world_, hit, direction);
+  const Bsdf bsdf(surface, -direction);
+  sample.position = surface.position;
+  sample.normal = surface.ns;
+  sample.cosView = std::clamp(glm::dot(surface.ns, -direction), 0.0f, 1.0f);
+  sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(frame.depth[index]) : hit.t;
+
+  const float coverage = surface.point.coverage;
+  Vec3 sum(0);
+  for (int i = 0; i < options_.samplesPerPixel; ++i) {
+    Walk walk(world_, options_,
+              core::PixelSampler(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                 static_cast<std::uint64_t>(i), options_.seed),
+              counters);
+    if (coverage > 0 && !surface.material->unlit) sum += coverage * walk.specular(surface, bsdf, 0, coverage);
+    if (coverage < 1)
+      sum += (1 - coverage) * walk.incoming(surface.leave(direction), 1, 1 - coverage, nullptr);
+  }
+  sum /= static_cast<float>(options_.samplesPerPixel);
+  if (bsdf.hasDiffuse()) {
+    // What the base layer shows of the Lambert lobe is view-independent; emission is the same in both.
+    const Vec3 viewDependent = bsdf.diffuseUnderMap() - baseAlbedo(surface.point) * (1 / core::kPi);
+    sum += viewDependent * world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1) * coverage;
+  }
+  if (!finite(sum)) {
+    ++counters.nonFinite;
+    return sample;
+  }
+  sample.correction = sum;
+  return sample;
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,226 @@
+#include "raytrace/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "core/math/random.h"
+#include "raytrace/bsdf.h"
+#include "raytrace/lights.h"
+#include "raytrace/parallel_rows.h"
+#include "raytrace/surface.h"
+
+namespace saccade::raytrace {
+namespace {
+
+constexpr int kRouletteBounces = 3;  ///< scattered so often before roulette begins
+constexpr float kLargestSurvival = 0.95f;
+constexpr int kMaxLayers = 256;  ///< blended layers that one path passes
+
+float largest(const Vec3& c) { return std::max({c.x, c.y, c.z}); }
+
+float powerHeuristic(float a, float b) {
+  const float a2 = a * a, b2 = b * b;
+  return a2 > 0 ? a2 / (a2 + b2) : 0;
+}
+
+/// The material as the transport sees it: with Transport::diffuse only the base layer's Lambert lobe.
+class Scatterer {
+ public:
+  Scatterer(const Surface& surface, const Vec3& toEye, Transport transport)
+      : full_(surface, toEye),
+        frame_(surface.ns),
+        ng_(surface.ng),
+        diffuseOnly_(transport == Transport::diffuse) {
+    albedo_ = diffuseOnly_ && surface.scatters() ? baseAlbedo(surface.point) : Vec3(0);
+  }
+  /// Light sampling can contribute.
+  bool takesLight() const {
+    return diffuseOnly_ ? largest(albedo_) > 0
+                        : full_.hasDiffuse() || (full_.hasSpecular() && !full_.delta());
+  }
+  Vec3 eval(const Vec3& wi) const {
+    if (!diffuseOnly_) return full_.eval(wi, kLobeAll);
+    return above(wi) ? albedo_ * (glm::dot(wi, frame_.n) / core::kPi) : Vec3(0);
+  }
+  float pdf(const Vec3& wi) const {
+    if (!diffuseOnly_) return full_.pdf(wi, kLobeAll);
+    return above(wi) ? glm::dot(wi, frame_.n) / core::kPi : 0;
+  }
+  std::optional<BsdfSample> sample(float uLobe, const Vec2& u) const {
+    if (!diffuseOnly_) return full_.sample(uLobe, u, kLobeAll);
+    const float r = std::sqrt(u.x), phi = 2 * core::kPi * u.y;
+    BsdfSample s;
+    s.direction = glm::normalize(
+        frame_.toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - u.x))}));
+    if (!above(s.direction)) return std::nullopt;
+    s.pdf = pdf(s.direction);
+    s.weight = albedo_;
+    return s;
+  }
+
+ private:
+  bool above(const Vec3& wi) const { return glm::dot(wi, frame_.n) > 0 && glm::dot(wi, ng_) > 0; }
+  Bsdf full_;
+  Frame frame_;
+  Vec3 ng_;
+  Vec3 albedo_{0};
+  bool diffuseOnly_;
+};
+
+/// One path.
+class Path {
+ public:
+  Path(const World& world, const PathOptions& options, core::PixelSampler& sampler, RayCounters& counters)
+      : world_(world), options_(options), sampler_(sampler), counters_(counters) {}
+
+  Vec3 radiance(Ray ray) {
+    Hit hit;
+    int bounce = 0, layers = 0;
+    while (bounce == 0 ? world_.intersectVisible(ray, hit, counters_)
+                       : world_.intersect(ray, hit, counters_)) {
+      const Vec3 direction = ray.direction;
+      travelled_ += hit.t;
+      const Surface surface = makeSurface(world_, hit, direction);
+      if (surface.point.coverage < 1 && !(sampler_.next1D() < surface.point.coverage)) {
+        if (++layers > kMaxLayers) break;
+        ray = surface.leave(direction);
+        continue;
+      }
+      sum_ += throughput_ * surface.emitted() * emissionWeight(hit, direction);
+      if (surface.material->unlit) {
+        if (surface.scatters()) sum_ += throughput_ * surface.point.baseColor;
+        break;
+      }
+      if (!surface.scatters() || bounce >= options_.bounces) break;
+      if (!scatter(surface, ray)) break;
+      if (++bounce > kRouletteBounces && !survives()) break;
+    }
+    return sum_;
+  }
+
+ private:
+  float emissionWeight(const Hit& hit, const Vec3& direction) const {
+    if (!(density_ > 0)) return 1;
+    return powerHeuristic(density_, world_.lights().pdf(choice_, hit.triangle, direction, travelled_));
+  }
+
+  /// Direct light by light sampling, then the next ray. False when the path ends.
+  bool scatter(const Surface& surface, Ray& ray) {
+    const Scatterer material(surface, -ray.direction, options_.transport);
+    const bool lights = !world_.lights().empty() && material.takesLight();
+    if (lights) {
+      choice_ = world_.lights().choose(surface.position);
+      sum_ += throughput_ * directLight(surface, material);
+    }
+    const float uLobe = sampler_.next1D();
+    const std::optional<BsdfSample> s = material.sample(uLobe, sampler_.next2D());
+    if (!s) return false;
+    throughput_ *= s->weight;
+    density_ = lights && !s->delta ? s->pdf : 0;
+    travelled_ = 0;
+    ray = surface.leave(s->direction);
+    return largest(throughput_) > 0;
+  }
+
+  Vec3 directLight(const Surface& surface, const Scatterer& material) {
+    const float uLight = sampler_.next1D();
+    const Vec2 u = sampler_.next2D();
+    LightSample light;
+    if (!world_.lights().sample(choice_, uLight, u, light)) return Vec3(0);
+    const Vec3 f = material.eval(light.direction);
+    if (!(largest(f) > 0)) return Vec3(0);
+    const float mis = light.delta ? 1 : powerHeuristic(light.pdf, material.pdf(light.direction));
+    const float free = world_.transmittance(shadowRay(surface, light), counters_);
+    return f * light.radiance * (mis * free / light.pdf);
+  }
+
+  bool survives() {
+    const float survival = std::min(kLargestSurvival, largest(throughput_));
+    if (!(sampler_.next1D() < survival)) return false;
+    throughput_ /= survival;
+    return true;
+  }
+
+  const World& world_;
+  const PathOptions& options_;
+  core::PixelSampler& sampler_;
+  RayCounters& counters_;
+  Vec3 sum_{0};
+  Vec3 throughput_{1};
+  LightChoice choice_;   ///< at the last rough scattering
+  float density_ = 0;    ///< of the present ray, 0 = the lights were not sampled where it began
+  float travelled_ = 0;  ///< since then, through blended layers
+};
+
+/// Running mean and variance of a pixel, in double.
+struct Moments {
+  glm::dvec3 sum{0}, squares{0};
+  void add(const Vec3& c) {
+    const glm::dvec3 d(c);
+    sum += d;
+    squares += d * d;
+  }
+  Vec3 mean(int n) const { return Vec3(sum / static_cast<double>(n)); }
+  Vec3 varianceOfMean(int n) const {
+    if (n < 2) return Vec3(0);
+    const double count = n;
+    return Vec3(glm::max(glm::dvec3(0), squares - sum * sum / count) / (count * (count - 1)));
+  }
+};
+
+bool finite(const Vec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
+
+void addPath(const World& world, const Ray& ray, const PathOptions& options, core::PixelSampler& sampler,
+             RayCounters& counters, Moments& moments) {
+  const Vec3 c = Path(world, options, sampler, counters).radiance(ray);
+  if (finite(c)) {
+    moments.add(c);
+  } else {
+    ++counters.nonFinite;
+  }
+}
+
+}  // namespace
+
+PathResult tracePaths(const World& world, const core::View& view, const PathOptions& options,
+                      const core::Progress& progress) {
+  PathResult result;
+  const int n = std::max(1, options.samplesPerPixel);
+  result.radiance = core::ImageRgb(view.width(), view.height());
+  if (options.variance) result.variance = core::ImageRgb(view.width(), view.height());
+  std::vector<RayCounters> counters(std::max(1, options.threads));
+  parallelRows(view.height(), options.threads, progress, [&](int y, int worker) {
+    RayCounters tally;
+    for (int x = 0; x < view.width(); ++x) {
+      if (progress.stop.stop_requested()) throw core::Error("stopped on request");
+      Moments moments;
+      for (int i = 0; i < n; ++i) {
+        core::PixelSampler sampler(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                   static_cast<std::uint64_t>(i), options.seed);
+        const Vec2 jitter = sampler.next2D();
+        const Vec2 pixel(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
+        const Ray ray{view.camera().eye, glm::normalize(view.direction(pixel)), 0, core::kInfinity};
+        addPath(world, ray, options, sampler, tally, moments);
+      }
+      result.radiance.at(x, y) = moments.mean(n);
+      if (options.variance) result.variance.at(x, y) = moments.varianceOfMean(n);
+    }
+    counters[worker].add(tally);
+  });
+  for (const RayCounters& c : counters) result.counters.add(c);
+  return result;
+}
+
+Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options, RayCounters& counters) {
+  Moments moments;
+  const int n = std::max(1, options.samplesPerPixel);
+  for (int i = 0; i < n; ++i) {
+    core::PixelSampler sampler(0, 0, static_cast<std::uint64_t>(i), options.seed);
+    addPath(world, ray, options, sampler, counters, moments);
+  }
+  return moments.mean(n);
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,164 @@
+#include "raytrace/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saccade::raytrace {
+namespace {
+
+template <class T>
+T interpolate(const T (&v)[3], float u, float b) {
+  return v[0] * (1 - u - b) + v[1] * u + v[2] * b;
+}
+
+/// Attributes few meshes have are read from the scene's own arrays.
+template <class T>
+T interpolateMesh(const World& world, const Hit& hit, std::uint32_t object, const std::vector<T>& values) {
+  const std::uint32_t* corner =
+      &world.scene().objects[object].mesh.indices[3 * (hit.triangle - world.firstTriangle(object))];
+  return values[corner[0]] * (1 - hit.u - hit.v) + values[corner[1]] * hit.u + values[corner[2]] * hit.v;
+}
+
+Vec2 textureUv(const World& world, const Hit& hit, const TriangleRecord& record, const Vec2& uv0,
+               const TextureView& texture) {
+  if (texture.uvSet == 0) return uv0;
+  const core::Mesh& mesh = world.scene().objects[record.object].mesh;
+  return mesh.uv1.empty() ? uv0 : interpolateMesh(world, hit, record.object, mesh.uv1);
+}
+
+void applyTextures(const World& world, const Hit& hit, const TriangleRecord& record, const Vec2& uv0,
+                   const CompiledMaterial& m, MaterialPoint& p) {
+  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, record, uv0, t)); };
+  if (m.baseColorTexture) {
+    const core::Vec4 t = texel(m.baseColorTexture);
+    p.baseColor *= Vec3(t);
+    p.coverage *= t.w;
+  }
+  if (m.metallicRoughnessTexture) {
+    const core::Vec4 t = texel(m.metallicRoughnessTexture);
+    p.roughness *= t.y;
+    p.metallic *= t.z;
+  }
+  if (m.emissionTexture && m.emits()) p.emission *= Vec3(texel(m.emissionTexture));
+  if (m.specularTexture) p.dielectricF0 *= texel(m.specularTexture).w;
+  if (m.specularColorTexture) p.dielectricF0 *= Vec3(texel(m.specularColorTexture));
+  if (m.transmissionTexture) p.transmission *= texel(m.transmissionTexture).x;
+}
+
+MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const TriangleRecord& record,
+                               const CompiledMaterial& m, const Vec2& uv0) {
+  MaterialPoint p;
+  p.baseColor = m.baseColor;
+  p.coverage = m.alpha;
+  p.emission = m.unlit ? Vec3(0) : m.emission;
+  p.metallic = m.metallic;
+  p.dielectricF0 = m.dielectricF0;
+  p.roughness = m.roughness;
+  p.transmission = m.transmission;
+  p.ior = m.ior;
+  p.diffuseFactor = m.diffuseFactor;
+  if (m.textured) applyTextures(world, hit, record, uv0, m, p);
+  if (world.hasColors(record.object)) {
+    const core::Vec4 c =
+        interpolateMesh(world, hit, record.object, world.scene().objects[record.object].mesh.colors);
+    p.baseColor *= Vec3(c);
+    p.coverage *= c.w;
+  }
+  p.coverage = m.alphaMode == core::AlphaMode::blend ? std::clamp(p.coverage, 0.0f, 1.0f) : 1.0f;
+  return p;
+}
+
+/// Tangent-space normal, world; the interpolated one where the mesh has no tangents.
+Vec3 mappedNormal(const World& world, const Hit& hit, const TriangleRecord& record, const CompiledMaterial& m,
+                  const Vec3& ns, const Vec2& uv0) {
+  const core::Mesh& mesh = world.scene().objects[record.object].mesh;
+  if (mesh.tangents.empty()) return ns;
+  const core::Vec4 tangent = interpolateMesh(world, hit, record.object, mesh.tangents);
+  const core::Vec4 texel = m.normalTexture.sample(textureUv(world, hit, record, uv0, m.normalTexture));
+  const Vec3 local = (Vec3(texel) * 2.0f - 1.0f) * Vec3(m.normalScale, m.normalScale, 1);
+  const Vec3 t = Vec3(tangent);
+  const Vec3 b = glm::cross(ns, t) * (tangent.w < 0 ? -1.0f : 1.0f);
+  const Vec3 n = t * local.x + b * local.y + ns * local.z;
+  const float length = glm::length(n);
+  return length > 0 && std::isfinite(length) ? n / length : ns;
+}
+
+/// Leak guard: bends ns so that it faces the eye and the mirror direction stays above the surface.
+Vec3 bendNormal(const Vec3& ng, Vec3 ns, const Vec3& toEye) {
+  constexpr float kLowestMirror = 0.01f;
+  if (glm::dot(ns, ng) <= 0) ns = ng;
+  const float lowest = std::min(0.9f * glm::dot(toEye, ng), kLowestMirror);
+  const Vec3 mirror = 2 * glm::dot(ns, toEye) * ns - toEye;
+  if (glm::dot(ns, toEye) > 0 && glm::dot(mirror, ng) >= lowest) return ns;
+  const Vec3 lifted = glm::normalize(mirror + ng * (lowest - glm::dot(mirror, ng)));
+  const Vec3 bent = toEye + lifted;
+  const float length = glm::length(bent);
+  return length > 1e-4f ? bent / length : ng;
+}
+
+Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
+  const float length = glm::length(v);
+  return length > 0 && std::isfinite(length) ? v / length : fallback;
+}
+
+}  // namespace
+
+Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
+  const TriangleRecord& record = world.record(hit.triangle);
+  const TriangleShape& shape = world.shape(hit.triangle);
+  Surface s;
+  s.triangle = hit.triangle;
+  s.object = record.object;
+  s.offset = record.offset;
+  s.material = &world.material(record.material);
+  s.closed = world.closed(record.object);
+  s.position = interpolate(shape.position, hit.u, hit.v);
+  s.uv0 = interpolate(record.uv0, hit.u, hit.v);
+  s.lightmapUv = interpolate(record.lightmapUv, hit.u, hit.v);
+  s.point = evaluateMaterial(world, hit, record, *s.material, s.uv0);
+
+  s.ng = unitOr(hit.ng, -direction);
+  s.ns = unitOr(interpolate(shape.normal, hit.u, hit.v), s.ng);
+  if (s.material->normalTexture) s.ns = mappedNormal(world, hit, record, *s.material, s.ns, s.uv0);
+  s.front = glm::dot(s.ng, direction) <= 0;
+  if (!s.front) {
+    s.ng = -s.ng;
+    s.ns = -s.ns;
+  }
+  s.ns = bendNormal(s.ng, s.ns, -direction);
+  return s;
+}
+
+Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, bool front) {
+  const TriangleShape& shape = world.shape(triangle);
+  Hit hit;
+  hit.triangle = triangle;
+  hit.u = u;
+  hit.v = v;
+  hit.ng = glm::cross(shape.position[1] - shape.position[0], shape.position[2] - shape.position[0]);
+  const Vec3 n = unitOr(hit.ng, Vec3(0, 1, 0));
+  return makeSurface(world, hit, front ? -n : n);
+}
+
+BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
+  const TriangleRecord& record = world.record(hit.triangle);
+  const CompiledMaterial& m = world.material(record.material);
+  const bool front = glm::dot(hit.ng, direction) <= 0;
+  BaseLight light;
+  const MaterialPoint p = evaluateMaterial(world, hit, record, m, interpolate(record.uv0, hit.u, hit.v));
+  light.coverage = p.coverage;
+  if (!front && !m.scattersBehind()) return light;
+  if (m.unlit) {
+    light.reflected = p.baseColor;
+    return light;
+  }
+  if (front || m.doubleSided) light.emitted = p.emission;
+  const Vec3 albedo = baseAlbedo(p);
+  if (albedo.x + albedo.y + albedo.z > 0) {
+    const Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
+    light.reflected = albedo * (1 / core::kPi) * world.irradiance(uv, front ? 0 : 1);
+  }
+  return light;
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,81 @@
+#include "raytrace/tracer_pool.h"
+
+#include <utility>
+
+namespace saccade::raytrace {
+namespace {
+
+/// Pixels between two looks at the stop flag.
+constexpr int kPollPixels = 16;
+
+}  // namespace
+
+TracerPool::TracerPool(const CorrectiveTracer& tracer, core::RegionQueue& regions, core::SampleQueue& samples,
+                       int threads)
+    : tracer_(tracer), regions_(regions), sampleQueue_(samples) {
+  workers_.reserve(threads > 0 ? threads : 0);
+  try {
+    for (int i = 0; i < threads; ++i) {
+      workers_.emplace_back([this, i] { work(static_cast<std::uint8_t>(i)); });
+    }
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+TracerPool::~TracerPool() { close(); }
+
+void TracerPool::close() {
+  stopping_ = true;
+  regions_.close();
+  sampleQueue_.close();
+  workers_.clear();
+}
+
+void TracerPool::check() {
+  const std::lock_guard lock(failureMutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+core::SampleBatch TracerPool::trace(const core::Job& job, std::uint8_t thread) {
+  core::SampleBatch batch;
+  batch.epoch = job.frame->epoch;
+  batch.sequence = job.sequence;
+  RayCounters counters;
+  int untilPoll = kPollPixels;
+  bool stopped = false;
+  core::forEachPixel(job, [&](int x, int y) {
+    if (stopped) return;
+    if (--untilPoll == 0) {
+      untilPoll = kPollPixels;
+      stopped = stopping_.load(std::memory_order_relaxed);
+    }
+    batch.samples.push_back(tracer_.trace(*job.frame, x, y, job.begin.level, counters));
+    batch.samples.back().thread = thread;
+  });
+  samples_.fetch_add(batch.samples.size(), std::memory_order_relaxed);
+  rays_.fetch_add(counters.rays, std::memory_order_relaxed);
+  nonFinite_.fetch_add(counters.nonFinite, std::memory_order_relaxed);
+  return batch;
+}
+
+bool TracerPool::runOne() {
+  const std::optional<core::Job> job = regions_.tryPop();
+  if (!job) return false;
+  sampleQueue_.push(trace(*job, 0));
+  return true;
+}
+
+void TracerPool::work(std::uint8_t thread) {
+  try {
+    while (std::optional<core::Job> job = regions_.pop()) {
+      if (!sampleQueue_.push(trace(*job, thread))) return;
+    }
+  } catch (...) {
+    const std::lock_guard lock(failureMutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+}
+
+}  // namespace saccade::raytrace
