@@ -1,4 +1,5 @@
-// Where tests find real data that is not part of the project: SACCADE_SHARED, default ../shared beside the checkout.
+// Where tests find real data that is not part of the project: SACCADE_SHARED, default ../shared beside the
+// checkout.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ inline std::filesystem::path sharedFolder() {
 
 }  // namespace saccade::tests
 
-/// Skips the test, saying so, when a file under the shared folder is absent; else defines `path`.
-#define SACCADE_SHARED_FILE(path, relative)                                            \
-  const std::filesystem::path path = saccade::tests::sharedFolder() / (relative);      \
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path << " (set SACCADE_SHARED)"
+/// Skips the test, saying so, when a file under the shared folder is absent; else defines `variable`.
+#define SACCADE_SHARED_FILE(variable, relative)                                       \
+  const std::filesystem::path variable = saccade::tests::sharedFolder() / (relative); \
+  if (!std::filesystem::exists(variable)) GTEST_SKIP() << "no " << variable << " (set SACCADE_SHARED)"

@@ -1,0 +1,22 @@
+// The formats behind core/image_io.h, one source file each. Used by image_io.cpp alone; any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+
+namespace saccade::core::codecs {
+
+/// Throws core::Error, naming `name`, for a side of 0 or more than kMaxImagePixels.
+void checkDimensions(std::int64_t width, std::int64_t height, const std::string& name);
+
+bool isPng(std::span<const std::uint8_t> bytes);
+ImageRgba8 decodePng(std::span<const std::uint8_t> bytes, const std::string& name);
+
+bool isJpeg(std::span<const std::uint8_t> bytes);
+ImageRgba8 decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name);
+
+}  // namespace saccade::core::codecs

@@ -1,0 +1,175 @@
+// OpenEXR. Only what its simple decoders read: flat scanlines, NONE, RLE or ZIP.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfVersion.h>
+
+#include <array>
+#include <cassert>
+#include <cstring>
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/image_codecs.h"
+#include "core/image_io.h"
+
+namespace saccade::core {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(const std::string& name) : Imf::OStream(name.c_str()) {}
+  void write(const char bytes[], int count) override {
+    const std::size_t end = position_ + static_cast<std::size_t>(count);
+    if (bytes_.size() < end) bytes_.resize(end);
+    std::memcpy(bytes_.data() + position_, bytes, static_cast<std::size_t>(count));
+    position_ = end;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  std::span<const std::uint8_t> bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  std::size_t position_ = 0;
+};
+
+/// Kind of file from its first eight bytes, before OpenEXR parses anything.
+void checkKind(const fs::path& file) {
+  if (!fs::exists(file)) throw Error(file.string() + ": no such file");
+  if (!fs::is_regular_file(file)) throw Error(file.string() + ": not a regular file");
+  std::ifstream stream(file, std::ios::binary);
+  unsigned char head[8] = {};
+  stream.read(reinterpret_cast<char*>(head), sizeof head);
+  const auto word = [&](int at) {
+    return static_cast<int>(head[at] | head[at + 1] << 8 | head[at + 2] << 16 | unsigned{head[at + 3]} << 24);
+  };
+  if (!stream || word(0) != Imf::MAGIC) throw Error(file.string() + ": not an OpenEXR image");
+  constexpr int kKinds = Imf::TILED_FLAG | Imf::NON_IMAGE_FLAG | Imf::MULTI_PART_FILE_FLAG;
+  if ((word(4) & kKinds) != 0) {
+    throw Error(file.string() + ": tiled, deep and multi-part EXR are not read; save flat scanlines");
+  }
+}
+
+void checkHeader(const Imf::Header& header, const std::string& name) {
+  switch (header.compression()) {
+    case Imf::NO_COMPRESSION:
+    case Imf::RLE_COMPRESSION:
+    case Imf::ZIPS_COMPRESSION:
+    case Imf::ZIP_COMPRESSION:
+      break;
+    default:
+      throw Error(name + ": EXR compression other than NONE, RLE, ZIP is not read; save it with ZIP");
+  }
+  const Imath::Box2i& window = header.dataWindow();
+  codecs::checkDimensions(std::int64_t{window.max.x} - window.min.x + 1,
+                          std::int64_t{window.max.y} - window.min.y + 1, name);
+}
+
+/// Names of the channels that become R, G and B.
+std::array<std::string, 3> pickChannels(const Imf::ChannelList& channels, const std::string& name) {
+  std::vector<std::string> names;
+  for (auto c = channels.begin(); c != channels.end(); ++c) {
+    names.emplace_back(c.name());
+    if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
+      throw Error(name + ": EXR channel " + names.back() + " is subsampled");
+    }
+  }
+  if (names.size() == 1) return {names[0], names[0], names[0]};
+  if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
+    return {"R", "G", "B"};
+  throw Error(name + ": EXR needs channels R, G, B or exactly one channel");
+}
+
+ImageRgb readPixels(Imf::InputFile& in, const std::string& name) {
+  checkHeader(in.header(), name);
+  const Imath::Box2i window = in.header().dataWindow();
+  const auto names = pickChannels(in.header().channels(), name);
+  ImageRgb image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+  const bool grey = names[0] == names[1];
+  Imf::FrameBuffer buffer;
+  for (int c = 0; c < (grey ? 1 : 3); ++c) {
+    // Slice::Make places the first pixel of the data window at the pointer.
+    buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels()[0][c], window, sizeof(Vec3),
+                                             sizeof(Vec3) * static_cast<std::size_t>(image.width())));
+  }
+  in.setFrameBuffer(buffer);
+  in.readPixels(window.min.y, window.max.y);
+  if (grey) {
+    for (Vec3& p : image.pixels()) p = Vec3(p.x);
+  }
+  return image;
+}
+
+struct ExrChannel {
+  std::string name;
+  const float* first;
+  std::size_t stride;  ///< bytes from pixel to pixel
+};
+
+void writeChannels(const fs::path& file, int width, int height, const std::vector<ExrChannel>& channels) {
+  MemoryStream stream(file.string());
+  try {
+    Imf::Header header(width, height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer buffer;
+    for (const ExrChannel& c : channels) {
+      header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
+      // OpenEXR's slices are not const, but writing leaves them alone.
+      auto* base = const_cast<char*>(reinterpret_cast<const char*>(c.first));
+      buffer.insert(c.name,
+                    Imf::Slice(Imf::FLOAT, base, c.stride, c.stride * static_cast<std::size_t>(width)));
+    }
+    Imf::OutputFile out(stream, header);
+    out.setFrameBuffer(buffer);
+    out.writePixels(height);
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": cannot be encoded as EXR: " + e.what());
+  }
+  // Only now: OpenEXR completes its table of offsets when the OutputFile is destroyed.
+  writeFileAtomically(file, stream.bytes());
+}
+
+}  // namespace
+
+ImageRgb readExr(const fs::path& file) {
+  checkKind(file);
+  try {
+    // Sides only; the product is checked from the header before any pixel is allocated.
+    Imf::Header::setMaxImageSize(1 << 20, 1 << 20);
+    Imf::InputFile in(file.c_str());
+    return readPixels(in, file.string());
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": damaged EXR: " + e.what());
+  }
+}
+
+void writeExr(const fs::path& file, const ImageRgb& image) {
+  codecs::checkDimensions(image.width(), image.height(), file.string());
+  const float* first = &image.pixels()[0].x;
+  writeChannels(file, image.width(), image.height(),
+                {{"R", first, sizeof(Vec3)}, {"G", first + 1, sizeof(Vec3)}, {"B", first + 2, sizeof(Vec3)}});
+}
+
+void writeExrChannels(const fs::path& file,
+                      const std::vector<std::pair<std::string, const ImageGray*>>& channels) {
+  assert(!channels.empty());
+  const ImageGray& first = *channels.front().second;
+  codecs::checkDimensions(first.width(), first.height(), file.string());
+  std::vector<ExrChannel> list;
+  for (const auto& [name, image] : channels) {
+    assert(image->width() == first.width() && image->height() == first.height());
+    list.push_back({name, image->pixels().data(), sizeof(float)});
+  }
+  writeChannels(file, first.width(), first.height(), list);
+}
+
+}  // namespace saccade::core
