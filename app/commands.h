@@ -17,7 +17,8 @@ void addRenderCommand(CLI::App& program, Run& run);
 void addWalkCommand(CLI::App& program, Run& run);
 void addCompareCommand(CLI::App& program, Run& run);
 
-/// Parses and runs; prints errors as the command line promises. Returns the exit status: 0, 1 failed, 2 wrong usage.
+/// Parses and runs; prints errors as the command line promises. Returns the exit status: 0, 1 failed, 2 wrong
+/// usage.
 int runProgram(int argc, const char* const* argv);
 
 }  // namespace saccade::app

@@ -1,4 +1,5 @@
-// What the benchmark programs share: repeats, medians, scenes, and the line that says where numbers come from.
+// What the benchmark programs share: repeats, medians, scenes, and the line that says where numbers come
+// from.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,9 @@ namespace saccade::bench {
 
 using Clock = std::chrono::steady_clock;
 
-inline double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+inline double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Wall seconds of one call.
 template <class F>
@@ -57,14 +60,19 @@ inline void printProvenance(int argc, char** argv) {
   const std::string commit = firstLineOf("git -C '" SACCADE_SOURCE_DIR "' describe --always --dirty");
   double load = 0;
   std::ifstream("/proc/loadavg") >> load;
-  std::printf("# %s; commit %s;%s, %u cores, load at start %.1f\n", command.c_str(), commit.c_str(), cpu.c_str(),
-              std::thread::hardware_concurrency(), load);
+  std::printf("# %s; commit %s;%s, %u cores, load at start %.1f\n", command.c_str(), commit.c_str(),
+              cpu.c_str(), std::thread::hardware_concurrency(), load);
 }
 
-inline std::string bundledScene(const std::string& name) { return std::string(SACCADE_SOURCE_DIR) + "/data/scenes/" + name + ".glb"; }
-inline std::string bundledPath(const std::string& name) { return std::string(SACCADE_SOURCE_DIR) + "/data/paths/" + name + ".json"; }
+inline std::string bundledScene(const std::string& name) {
+  return std::string(SACCADE_SOURCE_DIR) + "/data/scenes/" + name + ".glb";
+}
+inline std::string bundledPath(const std::string& name) {
+  return std::string(SACCADE_SOURCE_DIR) + "/data/paths/" + name + ".json";
+}
 
-inline std::unique_ptr<app::Workspace> openScene(const std::string& file, const std::string& quality = "preview") {
+inline std::unique_ptr<app::Workspace> openScene(const std::string& file,
+                                                 const std::string& quality = "preview") {
   app::SceneOptions options;
   options.path = file;
   options.quality = quality;

@@ -23,8 +23,9 @@ int bake(const BakeOptions& o) {
   BakeRequest request{.file = o.output, .always = true, .threads = tracerThreads(o.run), .seed = o.run.seed};
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
-  std::printf("%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(), workspace->maps.width,
-              workspace->maps.height, workspace->maps.layers, workspace->maps.layers == 1 ? "" : "s",
+  std::printf("%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(),
+              workspace->maps.width, workspace->maps.height, workspace->maps.layers,
+              workspace->maps.layers == 1 ? "" : "s",
               static_cast<unsigned long long>(workspace->maps.photons), workspace->maps.quality.c_str(),
               millisecondsSince(start) / 1000);
   return 0;
@@ -33,8 +34,8 @@ int bake(const BakeOptions& o) {
 }  // namespace
 
 void addBakeCommand(CLI::App& program, Run& run) {
-  CLI::App* command =
-      program.add_subcommand("bake", "Compute a scene's illumination maps (other commands do it by themselves when needed)");
+  CLI::App* command = program.add_subcommand(
+      "bake", "Compute a scene's illumination maps (other commands do it by themselves when needed)");
   auto o = std::make_shared<BakeOptions>();
   addSceneOptions(*command, o->scene);
   command->add_option("-o,--output", o->output, "Map file to write (default: the user's cache folder)");

@@ -24,14 +24,17 @@ bool isExr(const std::string& file) { return std::filesystem::path(file).extensi
 
 core::Comparison comparePictures(const CompareOptions& o) {
   if (isExr(o.reference) != isExr(o.test)) {
-    throw core::UsageError("compare needs two EXR files (compared linear) or two PNG files (as sRGB values), not one of each");
+    throw core::UsageError(
+        "compare needs two EXR files (compared linear) or two PNG files (as sRGB values), not one of each");
   }
   return isExr(o.reference) ? core::compareLinear(core::readExr(o.reference), core::readExr(o.test))
                             : core::compareDisplay(core::readImage8(o.reference), core::readImage8(o.test));
 }
 
 /// JSON knows no infinity: the PSNR of equal images is null.
-nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
 
 void printJson(const core::Comparison& c) {
   const nlohmann::ordered_json json = {{"rmse", number(c.rmse)},        {"relmse", number(c.relmse)},
@@ -42,14 +45,16 @@ void printJson(const core::Comparison& c) {
 }
 
 void print(const core::Comparison& c) {
-  std::printf("RMSE %.6g, relative MSE %.6g, PSNR %.2f dB, SSIM %.5f, largest difference %.6g\n", c.rmse, c.relmse, c.psnr,
-              c.ssim, c.maxAbs);
-  std::printf("FLIP mean %.5f, weighted median %.5f, 95th percentile %.5f\n", c.flip, c.flipMedian, c.flipP95);
+  std::printf("RMSE %.6g, relative MSE %.6g, PSNR %.2f dB, SSIM %.5f, largest difference %.6g\n", c.rmse,
+              c.relmse, c.psnr, c.ssim, c.maxAbs);
+  std::printf("FLIP mean %.5f, weighted median %.5f, 95th percentile %.5f\n", c.flip, c.flipMedian,
+              c.flipP95);
 }
 
 void writeMap(const std::string& file, const core::ImageGray& flip) {
   core::ImageRgba8 picture(flip.width(), flip.height());
-  for (std::size_t i = 0; i < flip.pixels().size(); ++i) picture.pixels()[i] = core::rampColor(flip.pixels()[i]);
+  for (std::size_t i = 0; i < flip.pixels().size(); ++i)
+    picture.pixels()[i] = core::rampColor(flip.pixels()[i]);
   core::writePng(file, picture);
 }
 
@@ -67,12 +72,17 @@ int compare(const CompareOptions& o) {
 }  // namespace
 
 void addCompareCommand(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("compare", "Compare a picture with its reference: RMSE, relative MSE, PSNR, SSIM, FLIP");
+  CLI::App* command = program.add_subcommand(
+      "compare", "Compare a picture with its reference: RMSE, relative MSE, PSNR, SSIM, FLIP");
   auto o = std::make_shared<CompareOptions>();
-  command->add_option("REFERENCE", o->reference, "EXR (compared linear; FLIP after the display transform) or PNG (sRGB values)")
+  command
+      ->add_option("REFERENCE", o->reference,
+                   "EXR (compared linear; FLIP after the display transform) or PNG (sRGB values)")
       ->required()
       ->check(CLI::ExistingFile);
-  command->add_option("TEST", o->test, "Picture of the same size and kind")->required()->check(CLI::ExistingFile);
+  command->add_option("TEST", o->test, "Picture of the same size and kind")
+      ->required()
+      ->check(CLI::ExistingFile);
   command->add_flag("--json", o->json, "Machine-readable output");
   command->add_option("--map", o->map, "Write the FLIP error map to this PNG");
   command->callback([o, &run] { run = [o] { return compare(*o); }; });

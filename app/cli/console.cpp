@@ -13,7 +13,8 @@
 namespace saccade::app {
 
 void setupLog() {
-  auto logger = std::make_shared<spdlog::logger>("saccade", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  auto logger =
+      std::make_shared<spdlog::logger>("saccade", std::make_shared<spdlog::sinks::stderr_sink_mt>());
   logger->set_pattern("saccade: %l: %v");
   spdlog::set_default_logger(std::move(logger));
 }
@@ -22,13 +23,15 @@ void printWarnings(const core::Warnings& warnings) {
   for (const std::string& warning : warnings) spdlog::warn("{}", warning);
 }
 
-ProgressBar::ProgressBar(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::string label)
+    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   if (terminal_ && shown_) std::fputc('\n', stderr);
 }
 
 void ProgressBar::show(double fraction) {
+  const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double left = fraction > 0 ? elapsed / fraction * (1 - fraction) : 0;
@@ -44,7 +47,8 @@ void ProgressBar::show(double fraction) {
   shown_ = true;
   constexpr int kWidth = 30;
   const std::string bar(static_cast<std::size_t>(percent * kWidth / 100), '#');
-  std::fprintf(stderr, "\r%s [%-*s] %3d %%, %.0f s left   ", label_.c_str(), kWidth, bar.c_str(), percent, left);
+  std::fprintf(stderr, "\r%s [%-*s] %3d %%, %.0f s left   ", label_.c_str(), kWidth, bar.c_str(), percent,
+               left);
 }
 
 namespace {
@@ -56,7 +60,8 @@ std::stop_token interruptToken() {
   // A signal handler may only set a flag; a watcher turns it into a stop request.
   static std::stop_source source;
   static const std::jthread watcher([](const std::stop_token& ending) {
-    while (!ending.stop_requested() && !interrupted) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    while (!ending.stop_requested() && !interrupted)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
     if (interrupted) source.request_stop();
   });
   static const bool installed = [] {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
 
 #include "core/error.h"
@@ -13,7 +14,7 @@ namespace saccade::app {
 void setupLog();
 void printWarnings(const core::Warnings& warnings);
 
-/// A bar with percentage and time left on a terminal; a line per tenth elsewhere. One thread.
+/// A bar with percentage and time left on a terminal; a line per tenth elsewhere. Any thread may call show.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
@@ -25,6 +26,7 @@ class ProgressBar {
 
  private:
   using Clock = std::chrono::steady_clock;
+  std::mutex mutex_;
   std::string label_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_{};

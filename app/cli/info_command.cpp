@@ -18,7 +18,8 @@ Json toJson(const core::Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
 std::size_t lightCount(const core::Scene& scene) {
   std::size_t n = scene.lights.size();
-  for (const core::Object& object : scene.objects) n += scene.materials[static_cast<std::size_t>(object.material)].emits() ? 1 : 0;
+  for (const core::Object& object : scene.objects)
+    n += scene.materials[static_cast<std::size_t>(object.material)].emits() ? 1 : 0;
   return n;
 }
 
@@ -52,13 +53,17 @@ Json describe(const core::Scene& scene, const core::Plan& plan) {
 
 void print(const core::Scene& scene, const core::Plan& plan) {
   std::printf("%s\n", scene.path.c_str());
-  std::printf("  %zu objects (%u non-diffuse), %zu triangles, %zu materials, %zu textures\n", scene.objects.size(),
-              scene.idCount(), scene.triangleCount(), scene.materials.size(), scene.textures.size());
-  std::printf("  %zu lights%s\n", lightCount(scene), scene.defaultLight ? " (a default panel; the file has none)" : "");
+  std::printf("  %zu objects (%u non-diffuse), %zu triangles, %zu materials, %zu textures\n",
+              scene.objects.size(), scene.idCount(), scene.triangleCount(), scene.materials.size(),
+              scene.textures.size());
+  std::printf("  %zu lights%s\n", lightCount(scene),
+              scene.defaultLight ? " (a default panel; the file has none)" : "");
   const core::Bounds& b = scene.bounds;
-  std::printf("  bounds (%.2f, %.2f, %.2f) to (%.2f, %.2f, %.2f) m\n", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
+  std::printf("  bounds (%.2f, %.2f, %.2f) to (%.2f, %.2f, %.2f) m\n", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y,
+              b.hi.z);
   for (const core::Camera& c : scene.cameras) {
-    std::printf("  camera '%s' at (%.2f, %.2f, %.2f), %.1f degrees\n", c.name.c_str(), c.eye.x, c.eye.y, c.eye.z, c.fovYDegrees);
+    std::printf("  camera '%s' at (%.2f, %.2f, %.2f), %.1f degrees\n", c.name.c_str(), c.eye.x, c.eye.y,
+                c.eye.z, c.fovYDegrees);
   }
   std::printf("  plan:\n");
   for (const core::PlanLine& line : plan.lines) {
@@ -81,7 +86,8 @@ int info(const SceneOptions& options, bool json) {
 }  // namespace
 
 void addInfoCommand(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("info", "Say what a scene holds and what will run for it, with reasons");
+  CLI::App* command =
+      program.add_subcommand("info", "Say what a scene holds and what will run for it, with reasons");
   auto scene = std::make_shared<SceneOptions>();
   auto json = std::make_shared<bool>(false);
   addSceneOptions(*command, *scene);

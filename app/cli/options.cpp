@@ -13,34 +13,46 @@ namespace saccade::app {
 void addSceneOptions(CLI::App& command, SceneOptions& o) {
   const std::string group = "Scene";
   command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
-  command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")->group(group);
+  command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")
+      ->group(group);
   command.add_option("--quality", o.quality, "Quality of the maps when they have to be baked")
       ->check(CLI::IsMember({"preview", "medium", "high"}))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--light", o.load.lights,
-                     "Add a light: point:pos=x,y,z,power=r,g,b | spot:... | directional:... | panel:at=x,y,z,size=w,h,radiance=r,g,b")
+  command
+      .add_option("--light", o.load.lights,
+                  "Add a light: point:pos=x,y,z,power=r,g,b | spot:... | directional:... | "
+                  "panel:at=x,y,z,size=w,h,radiance=r,g,b")
       ->group(group);
   command.add_option("--unit-scale", o.load.unitScale, "Metres per unit of the file")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
-  command.add_option("--nondiffuse", o.load.nonDiffuseThreshold,
-                     "An object is corrected when the albedo of its lobes other than Lambert exceeds this")
+  command
+      .add_option("--nondiffuse", o.load.nonDiffuseThreshold,
+                  "An object is corrected when the albedo of its lobes other than Lambert exceeds this")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--scene", o.load.scene, "glTF scene index (default: the file's own choice)")->group(group);
-  command.add_option("--time", o.load.timeSeconds, "Scene time in seconds")->capture_default_str()->group(group);
+  command.add_option("--scene", o.load.scene, "glTF scene index (default: the file's own choice)")
+      ->group(group);
+  command.add_option("--time", o.load.timeSeconds, "Scene time in seconds")
+      ->capture_default_str()
+      ->group(group);
 }
 
 void addCameraOptions(CLI::App& command, CameraOptions& o) {
   const std::string group = "Camera";
   command.add_option("--camera", o.camera, "Camera of the file, by name or number from 0")->group(group);
-  command.add_option("--eye", o.eye, "Eye position x,y,z in metres")->delimiter(',')->expected(3)->group(group);
+  command.add_option("--eye", o.eye, "Eye position x,y,z in metres")
+      ->delimiter(',')
+      ->expected(3)
+      ->group(group);
   command.add_option("--at", o.at, "Point looked at x,y,z")->delimiter(',')->expected(3)->group(group);
   command.add_option("--up", o.up, "Up direction x,y,z")->delimiter(',')->expected(3)->group(group);
-  command.add_option("--fov", o.fovDegrees, "Vertical field of view in degrees")->check(CLI::Range(0.1, 179.9))->group(group);
+  command.add_option("--fov", o.fovDegrees, "Vertical field of view in degrees")
+      ->check(CLI::Range(0.1, 179.9))
+      ->group(group);
 }
 
 void addRunOptions(CLI::App& command, RunOptions& o) {
@@ -49,8 +61,10 @@ void addRunOptions(CLI::App& command, RunOptions& o) {
       ->check(CLI::IsMember({"osmesa", "egl"}))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--threads", o.threads, "Ray-tracing threads; 0 runs every stage inline with a virtual clock "
-                                             "(default: one less than the cores)")
+  command
+      .add_option("--threads", o.threads,
+                  "Ray-tracing threads; 0 runs every stage inline with a virtual clock "
+                  "(default: one less than the cores)")
       ->check(CLI::Range(0, 256))
       ->group(group);
   command.add_option("--seed", o.seed, "Seed of all random numbers")->capture_default_str()->group(group);
@@ -69,11 +83,14 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
                                                     {"random", Order::random},
                                                     {"scanline", Order::scanline},
                                                     {"largest", Order::largest}};
-  command.add_option("--attention", o.attention.attention, "0 = saliency decides, 1 = task importance decides")
+  command
+      .add_option("--attention", o.attention.attention, "0 = saliency decides, 1 = task importance decides")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--order", o.attention.order, "Order of the corrections: attention, task, random, scanline, largest")
+  command
+      .add_option("--order", o.attention.order,
+                  "Order of the corrections: attention, task, random, scanline, largest")
       ->transform(CLI::CheckedTransformer(kOrders))
       ->default_str("attention")
       ->group(group);
@@ -97,8 +114,10 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--spp", o.samplesPerPixel, "Sub-samples a pixel (corrective, raytrace: averaged at the pixel centre; path: "
-                                                 "over the pixel's square)")
+  command
+      .add_option("--spp", o.samplesPerPixel,
+                  "Sub-samples a pixel (corrective, raytrace: averaged at the pixel centre; path: "
+                  "over the pixel's square)")
       ->check(CLI::Range(1, 1 << 20))
       ->group(group);
 }
@@ -110,7 +129,9 @@ void addSizeOption(CLI::App& command, ImageSize& size) {
           [&size](const std::string& text) {
             const std::size_t x = text.find('x');
             const char* end = text.data() + text.size();
-            auto bad = [&] { throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT such as 512x512, got " + text); };
+            auto bad = [&] {
+              throw CLI::ValidationError("--size", "expected WIDTHxHEIGHT such as 512x512, got " + text);
+            };
             if (x == std::string::npos) bad();
             const auto first = std::from_chars(text.data(), text.data() + x, size.width);
             const auto second = std::from_chars(text.data() + x + 1, end, size.height);

@@ -1,5 +1,6 @@
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
 
 #include "app/cli/console.h"
 #include "app/commands.h"
@@ -19,7 +20,8 @@ int usageError(const std::string& text, const std::string& hint) {
 
 int runProgram(int argc, const char* const* argv) {
   setupLog();
-  CLI::App program("Saccade: walk through scenes with global illumination, ray-traced where you look", "saccade");
+  CLI::App program("Saccade: walk through scenes with global illumination, ray-traced where you look",
+                   "saccade");
   program.require_subcommand(1);
   program.set_version_flag("--version", "saccade 0.1");
   Run run;

@@ -40,7 +40,8 @@ void checkOutput(const RenderOptions& o) {
     throw core::UsageError("-o " + o.output + ": the name must end in .exr (linear) or .png (display)");
   }
   const std::filesystem::path folder = std::filesystem::absolute(o.output).parent_path();
-  if (!std::filesystem::is_directory(folder)) throw core::Error(folder.string() + ": no such folder; make it first (-o)");
+  if (!std::filesystem::is_directory(folder))
+    throw core::Error(folder.string() + ": no such folder; make it first (-o)");
 }
 
 bool wantsExr(const RenderOptions& o) { return std::filesystem::path(o.output).extension() == ".exr"; }
@@ -69,8 +70,10 @@ FrameBudget budgetOf(const RenderOptions& o) {
   return FrameBudget::untilConverged();
 }
 
-RunStats renderCorrective(const RenderOptions& o, const Workspace& workspace, Headless& gl, const core::Camera& camera) {
-  FrameLoop loop(workspace, *gl.renderer, {o.corrective, tracerThreads(o.run), o.run.seed, o.run.exposureEv, false});
+RunStats renderCorrective(const RenderOptions& o, const Workspace& workspace, Headless& gl,
+                          const core::Camera& camera) {
+  FrameLoop loop(workspace, *gl.renderer,
+                 {o.corrective, tracerThreads(o.run), o.run.seed, o.run.exposureEv, false});
   loop.step(camera, o.size, budgetOf(o), interruptToken());
   if (o.aov.empty()) {
     writeLinear(o, loop.linear());
@@ -80,8 +83,8 @@ RunStats renderCorrective(const RenderOptions& o, const Workspace& workspace, He
   return loop.stats();
 }
 
-RunStats renderReference(const RenderOptions& o, const Workspace& workspace, Headless& gl, const core::Camera& camera,
-                         bool trace) {
+RunStats renderReference(const RenderOptions& o, const Workspace& workspace, Headless& gl,
+                         const core::Camera& camera, bool trace) {
   RunStats stats;
   const auto start = std::chrono::steady_clock::now();
   const core::View view(camera, o.size.width, o.size.height, workspace.scene.bounds);
@@ -91,7 +94,8 @@ RunStats renderReference(const RenderOptions& o, const Workspace& workspace, Hea
   raytrace::TraceAllResult reference;
   if (trace) {
     const auto traceStart = std::chrono::steady_clock::now();
-    const raytrace::CorrectiveTracer tracer(*workspace.world, {.seed = o.run.seed, .samplesPerPixel = o.corrective.samplesPerPixel});
+    const raytrace::CorrectiveTracer tracer(
+        *workspace.world, {.seed = o.run.seed, .samplesPerPixel = o.corrective.samplesPerPixel});
     ProgressBar bar("tracing");
     reference = raytrace::traceAll(tracer, *frame, tracerThreads(o.run),
                                    {[&](double fraction) { bar.show(fraction); }, interruptToken()});
@@ -144,7 +148,8 @@ int render(const RenderOptions& o) {
     const auto workspace = openWithoutMaps(o.scene);
     stats = renderPathTraced(o, *workspace, chooseCamera(workspace->scene, o.camera));
   } else {
-    const auto workspace = openWorkspace(o.scene, {.threads = tracerThreads(o.run), .seed = o.run.seed}, stop);
+    const auto workspace =
+        openWorkspace(o.scene, {.threads = tracerThreads(o.run), .seed = o.run.seed}, stop);
     const core::Camera camera = chooseCamera(workspace->scene, o.camera);
     Headless gl(o.run, *workspace);
     stats = o.method == "corrective" ? renderCorrective(o, *workspace, gl, camera)
@@ -162,25 +167,32 @@ int render(const RenderOptions& o) {
 }  // namespace
 
 void addRenderCommand(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("render", "Render one picture to an EXR (linear) or PNG (display) file");
+  CLI::App* command =
+      program.add_subcommand("render", "Render one picture to an EXR (linear) or PNG (display) file");
   auto o = std::make_shared<RenderOptions>();
   addSceneOptions(*command, o->scene);
   command->add_option("-o,--output", o->output, "Image to write: .exr or .png")->required();
   command
-      ->add_option("--method", o->method,
-                   "base: illumination maps alone; corrective: with corrections where people look; raytrace: the same "
-                   "corrections for every pixel in scanline order; path: unbiased path tracing")
+      ->add_option(
+          "--method", o->method,
+          "base: illumination maps alone; corrective: with corrections where people look; raytrace: the same "
+          "corrections for every pixel in scanline order; path: unbiased path tracing")
       ->check(CLI::IsMember({"base", "corrective", "raytrace", "path"}))
       ->capture_default_str();
   addSizeOption(*command, o->size);
-  command->add_option("--budget-ms", o->budgetMs, "corrective: milliseconds for the frame")->check(CLI::PositiveNumber);
-  command->add_option("--samples", o->samples, "corrective: the first N samples of the schedule, on any number of threads");
-  command->add_flag("--converge", o->converge, "corrective: until every non-diffuse pixel is exact (the default)");
+  command->add_option("--budget-ms", o->budgetMs, "corrective: milliseconds for the frame")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--samples", o->samples,
+                      "corrective: the first N samples of the schedule, on any number of threads");
+  command->add_flag("--converge", o->converge,
+                    "corrective: until every non-diffuse pixel is exact (the default)");
   command->add_option("--aov", o->aov, "Write this instead of the picture: id, saliency, level, thread, age");
   command->add_option("--bounces", o->bounces, "path: longest path in bounces")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_option("--lobes", o->lobes, "path: all lobes, or only Lambert's (what the illumination maps hold)")
+  command
+      ->add_option("--lobes", o->lobes,
+                   "path: all lobes, or only Lambert's (what the illumination maps hold)")
       ->check(CLI::IsMember({"all", "diffuse"}))
       ->capture_default_str();
   addCameraOptions(*command, o->camera);

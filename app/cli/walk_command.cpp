@@ -38,20 +38,24 @@ void writeFrame(const WalkOptions& o, int number, const core::ImageRgba8& image)
 }
 
 void report(const RunStats& s) {
-  std::printf("%zu frames: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms; %llu missed deadlines; %llu samples traced, %llu reused%s\n",
-              s.frameMs.size(), s.framePercentileMs(0.5), s.framePercentileMs(0.95), s.framePercentileMs(0.99),
-              static_cast<unsigned long long>(s.missedDeadlines), static_cast<unsigned long long>(s.samplesTraced),
-              static_cast<unsigned long long>(s.samplesReused), s.converged ? "; converged" : "");
+  std::printf(
+      "%zu frames: p50 %.1f ms, p95 %.1f ms, p99 %.1f ms; %llu missed deadlines; %llu samples traced, %llu "
+      "reused%s\n",
+      s.frameMs.size(), s.framePercentileMs(0.5), s.framePercentileMs(0.95), s.framePercentileMs(0.99),
+      static_cast<unsigned long long>(s.missedDeadlines), static_cast<unsigned long long>(s.samplesTraced),
+      static_cast<unsigned long long>(s.samplesReused), s.converged ? "; converged" : "");
 }
 
 int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
   const CameraPath path = pathOf(o, workspace.scene);
-  const double seconds = o.seconds.value_or(path.lengthSeconds() > 0 ? path.lengthSeconds() : kOrbitPeriodSeconds);
+  const double seconds =
+      o.seconds.value_or(path.lengthSeconds() > 0 ? path.lengthSeconds() : kOrbitPeriodSeconds);
   const int frames = std::max(1, static_cast<int>(std::lround(seconds * o.fps)));
   const std::stop_token stop = interruptToken();
   Headless gl(o.run, workspace);
   const int threads = tracerThreads(o.run);
-  FrameLoop loop(workspace, *gl.renderer, {o.corrective, threads, o.run.seed, o.run.exposureEv, threads > 0 && !o.samples});
+  FrameLoop loop(workspace, *gl.renderer,
+                 {o.corrective, threads, o.run.seed, o.run.exposureEv, threads > 0 && !o.samples});
   if (!o.framesFolder.empty()) std::filesystem::create_directories(o.framesFolder);
   ProgressBar bar("walking");
   for (int i = 0; i < frames && !stop.stop_requested(); ++i) {
@@ -59,7 +63,8 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
     if (!o.framesFolder.empty()) writeFrame(o, i, loop.display());
     bar.show((i + 1.0) / frames);
   }
-  if (o.converge && !stop.stop_requested()) loop.step(loop.frame().view.camera(), o.size, FrameBudget::untilConverged(), stop);
+  if (o.converge && !stop.stop_requested())
+    loop.step(loop.frame().view.camera(), o.size, FrameBudget::untilConverged(), stop);
   if (!o.output.empty()) writeLast(o, loop);
   RunStats stats = loop.stats();
   stats.context = gl.context->name();
@@ -70,8 +75,8 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
 }
 
 int walk(const WalkOptions& o) {
-  const auto workspace =
-      openWorkspace(o.scene, {.threads = std::max(1, tracerThreads(o.run)), .seed = o.run.seed}, interruptToken());
+  const auto workspace = openWorkspace(
+      o.scene, {.threads = std::max(1, tracerThreads(o.run)), .seed = o.run.seed}, interruptToken());
   if (o.headless) return walkHeadless(o, *workspace);
   return runViewer(o, *workspace);
 }
@@ -87,23 +92,35 @@ void writeLast(const WalkOptions& o, FrameLoop& loop) {
 }
 
 void addWalkCommand(CLI::App& program, Run& run) {
-  CLI::App* command = program.add_subcommand("walk", "Walk through a scene: in a window, or off screen along a path");
+  CLI::App* command =
+      program.add_subcommand("walk", "Walk through a scene: in a window, or off screen along a path");
   auto o = std::make_shared<WalkOptions>();
   addSceneOptions(*command, o->scene);
   command->add_flag("--headless", o->headless, "No window: follow a path and report");
-  auto* orbit = command->add_flag("--orbit", o->orbit, "Circle once around what the camera looks at, in 12 seconds");
-  command->add_option("--path", o->path, "Camera path: JSON list of {t, eye, at, up, fov}")->check(CLI::ExistingFile)->excludes(orbit);
-  command->add_option("--fps", o->fps, "Frame rate to keep")->check(CLI::Range(0.1, 1000.0))->capture_default_str();
-  command->add_option("--seconds", o->seconds, "Length of the walk (default: the path's)")->check(CLI::PositiveNumber);
+  auto* orbit =
+      command->add_flag("--orbit", o->orbit, "Circle once around what the camera looks at, in 12 seconds");
+  command->add_option("--path", o->path, "Camera path: JSON list of {t, eye, at, up, fov}")
+      ->check(CLI::ExistingFile)
+      ->excludes(orbit);
+  command->add_option("--fps", o->fps, "Frame rate to keep")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--seconds", o->seconds, "Length of the walk (default: the path's)")
+      ->check(CLI::PositiveNumber);
   command->add_option("--frames", o->framesFolder, "Write every frame to this folder as PNG");
   command->add_option("-o,--output", o->output, "Write the last frame: .exr (linear) or .png");
   command->add_flag("--converge", o->converge, "After the walk, rest until every non-diffuse pixel is exact");
-  command->add_option("--budget-ms", o->budgetMs, "Milliseconds a frame, instead of --fps")->check(CLI::PositiveNumber);
-  command->add_option("--samples", o->samples, "Samples a frame, instead of a time: repeats exactly on any number of threads");
+  command->add_option("--budget-ms", o->budgetMs, "Milliseconds a frame, instead of --fps")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--samples", o->samples,
+                      "Samples a frame, instead of a time: repeats exactly on any number of threads");
   addSizeOption(*command, o->size);
-  command->add_option("--ui-screenshot", o->uiScreenshot, "Window: write what it shows when it closes, panel included");
-  command->add_option("--exit-after", o->exitAfterSeconds, "Window: close after so many seconds")->check(CLI::PositiveNumber);
-  command->add_option("--overlay", o->overlay, "Window: overlay to start with: id, saliency, level, thread, age");
+  command->add_option("--ui-screenshot", o->uiScreenshot,
+                      "Window: write what it shows when it closes, panel included");
+  command->add_option("--exit-after", o->exitAfterSeconds, "Window: close after so many seconds")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--overlay", o->overlay,
+                      "Window: overlay to start with: id, saliency, level, thread, age");
   addCameraOptions(*command, o->camera);
   addCorrectiveOptions(*command, o->corrective);
   addRunOptions(*command, o->run);

@@ -15,17 +15,21 @@ namespace {
 using Json = nlohmann::json;
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::size_t key, const std::string& rule) {
-  throw core::Error(file.string() + ": key " + std::to_string(key) + ": " + rule +
-                    "; a key reads {\"t\": 0, \"eye\": [0,1.6,3], \"at\": [0,1,0], \"up\": [0,1,0], \"fov\": 60}");
+  throw core::Error(
+      file.string() + ": key " + std::to_string(key) + ": " + rule +
+      "; a key reads {\"t\": 0, \"eye\": [0,1.6,3], \"at\": [0,1,0], \"up\": [0,1,0], \"fov\": 60}");
 }
 
-core::Vec3 readVec3(const std::filesystem::path& file, std::size_t key, const Json& object, const char* name) {
+core::Vec3 readVec3(const std::filesystem::path& file, std::size_t key, const Json& object,
+                    const char* name) {
   const auto found = object.find(name);
-  if (found == object.end() || !found->is_array() || found->size() != 3) fail(file, key, std::string(name) + " needs 3 numbers");
+  if (found == object.end() || !found->is_array() || found->size() != 3)
+    fail(file, key, std::string(name) + " needs 3 numbers");
   core::Vec3 v;
   for (int i = 0; i < 3; ++i) {
     const Json& number = (*found)[static_cast<std::size_t>(i)];
-    if (!number.is_number() || !std::isfinite(number.get<float>())) fail(file, key, std::string(name) + " needs finite numbers");
+    if (!number.is_number() || !std::isfinite(number.get<float>()))
+      fail(file, key, std::string(name) + " needs finite numbers");
     v[i] = number.get<float>();
   }
   return v;
@@ -46,8 +50,10 @@ CameraKey readKey(const std::filesystem::path& file, std::size_t index, const Js
   key.camera.eye = readVec3(file, index, object, "eye");
   key.camera.at = readVec3(file, index, object, "at");
   if (object.contains("up")) key.camera.up = readVec3(file, index, object, "up");
-  if (object.contains("fov")) key.camera.fovYDegrees = static_cast<float>(readNumber(file, index, object, "fov"));
-  if (!(key.camera.fovYDegrees > 0 && key.camera.fovYDegrees < 180)) fail(file, index, "fov must lie between 0 and 180");
+  if (object.contains("fov"))
+    key.camera.fovYDegrees = static_cast<float>(readNumber(file, index, object, "fov"));
+  if (!(key.camera.fovYDegrees > 0 && key.camera.fovYDegrees < 180))
+    fail(file, index, "fov must lie between 0 and 180");
   if (key.camera.eye == key.camera.at) fail(file, index, "eye and at are the same point");
   return key;
 }
@@ -77,11 +83,13 @@ CameraPath CameraPath::read(const std::filesystem::path& file) {
   if (!stream) throw core::Error(file.string() + ": cannot be read; check the name given to --path");
   const Json root = Json::parse(stream, nullptr, false);
   if (root.is_discarded()) throw core::Error(file.string() + ": not JSON");
-  if (!root.is_array() || root.empty()) throw core::Error(file.string() + ": expected a non-empty list of camera keys");
+  if (!root.is_array() || root.empty())
+    throw core::Error(file.string() + ": expected a non-empty list of camera keys");
   std::vector<CameraKey> keys;
   for (std::size_t i = 0; i < root.size(); ++i) {
     keys.push_back(readKey(file, i, root[i]));
-    if (i > 0 && keys[i].seconds <= keys[i - 1].seconds) fail(file, i, "t must be later than that of the key before");
+    if (i > 0 && keys[i].seconds <= keys[i - 1].seconds)
+      fail(file, i, "t must be later than that of the key before");
   }
   return CameraPath(std::move(keys));
 }
@@ -116,7 +124,8 @@ core::Camera CameraPath::at(double seconds) const {
   camera.eye = interpolate(keys_, i, s, [](const core::Camera& c) { return c.eye; });
   camera.at = interpolate(keys_, i, s, [](const core::Camera& c) { return c.at; });
   camera.up = interpolate(keys_, i, s, [](const core::Camera& c) { return c.up; });
-  camera.fovYDegrees = std::clamp(interpolate(keys_, i, s, [](const core::Camera& c) { return c.fovYDegrees; }), 0.1f, 179.9f);
+  camera.fovYDegrees =
+      std::clamp(interpolate(keys_, i, s, [](const core::Camera& c) { return c.fovYDegrees; }), 0.1f, 179.9f);
   return camera;
 }
 

@@ -16,10 +16,11 @@ struct CameraKey {
 /// Immutable; any thread.
 class CameraPath {
  public:
-  /// JSON [{"t": s, "eye": [x,y,z], "at": [..], "up": [..], "fov": degrees}, ...]; times must rise. "up" and "fov" may be
-  /// left out (0,1,0 and 60). Throws core::Error naming file, key and rule.
+  /// JSON [{"t": s, "eye": [x,y,z], "at": [..], "up": [..], "fov": degrees}, ...]; times must rise. "up" and
+  /// "fov" may be left out (0,1,0 and 60). Throws core::Error naming file, key and rule.
   static CameraPath read(const std::filesystem::path& file);
-  /// Around the point `camera` looks at, about the world's Y axis, once per `periodSeconds`, starting at `camera`.
+  /// Around the point `camera` looks at, about the world's Y axis, once per `periodSeconds`, starting at
+  /// `camera`.
   static CameraPath orbit(const core::Camera& camera, double periodSeconds);
   /// Standing still.
   static CameraPath still(const core::Camera& camera);

@@ -26,19 +26,27 @@ class StageTimer {
 
 constexpr std::chrono::milliseconds kStopPollInterval{20};
 
+attention::AttentionOptions seeded(attention::AttentionOptions options, std::uint32_t seed) {
+  options.seed = seed;
+  return options;
+}
+
 }  // namespace
 
-FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer, const FrameLoopOptions& options)
+FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer,
+                     const FrameLoopOptions& options)
     : workspace_(workspace),
       renderer_(renderer),
       options_(options),
       regions_(options.corrective.jobSize),
-      tracer_(*workspace.world, {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
+      tracer_(*workspace.world,
+              {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
       cache_(static_cast<std::size_t>(options.corrective.cacheMb) << 20),
-      analyzer_(mailbox_, regions_, options.corrective.attention, options.asynchronousAnalysis),
+      analyzer_(seeded(options.corrective.attention, options.seed)),
       pool_(tracer_, regions_, samples_, options.threads) {
   stats_.seed = options.seed;
   stats_.threads = options.threads;
+  if (options.asynchronousAnalysis) analyzer_.start(mailbox_, regions_);
 }
 
 FrameLoop::~FrameLoop() {
@@ -47,7 +55,8 @@ FrameLoop::~FrameLoop() {
   samples_.close();
 }
 
-void FrameLoop::step(const core::Camera& camera, ImageSize size, const FrameBudget& budget, const std::stop_token& stop) {
+void FrameLoop::step(const core::Camera& camera, ImageSize size, const FrameBudget& budget,
+                     const std::stop_token& stop) {
   const Clock::time_point start = Clock::now();
   pool_.check();
   analyzer_.check();
@@ -138,8 +147,9 @@ void FrameLoop::correctAll(const std::stop_token& stop) {
   }
 }
 
-// Step 6 for a number of samples: jobs are numbered in the order in which they are handed out, which does not depend on
-// the number of tracers, so the batches are taken in that order and the last one is cut (design fact 10).
+// Step 6 for a number of samples: jobs are numbered in the order in which they are handed out, which does not
+// depend on the number of tracers, so the batches are taken in that order and the last one is cut (design
+// fact 10).
 void FrameLoop::correctSamples(std::uint64_t count, const std::stop_token& stop) {
   std::uint64_t taken = takeInOrder(count);
   while (taken < count && !layer_.converged() && !stop.stop_requested()) {
@@ -152,10 +162,12 @@ void FrameLoop::correctSamples(std::uint64_t count, const std::stop_token& stop)
   }
 }
 
-/// Takes what stands at the head of the order; the rest of a cut batch waits for the next frame of this camera.
+/// Takes what stands at the head of the order; the rest of a cut batch waits for the next frame of this
+/// camera.
 std::uint64_t FrameLoop::takeInOrder(std::uint64_t atMost) {
   std::uint64_t taken = 0;
-  for (auto it = pending_.find(nextSequence_); it != pending_.end() && taken < atMost; it = pending_.find(nextSequence_)) {
+  for (auto it = pending_.find(nextSequence_); it != pending_.end() && taken < atMost;
+       it = pending_.find(nextSequence_)) {
     std::vector<core::Sample>& samples = it->second.samples;
     const auto cut = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(atMost - taken, samples.size()));
     core::SampleBatch head{it->second.epoch, it->second.sequence, {samples.begin(), samples.begin() + cut}};
@@ -185,7 +197,8 @@ void FrameLoop::take(core::SampleBatch& batch) {
     }
     stats_.samplesTraced += batch.samples.size();
   }
-  // Samples for an older frame are never exact; they wait in the cache for the next camera change (design fact 6).
+  // Samples for an older frame are never exact; they wait in the cache for the next camera change (design
+  // fact 6).
   cache_.add(batch, batch.epoch);
 }
 
@@ -195,8 +208,8 @@ void FrameLoop::composite() {
   if (!display_ || displayIsShared_) display_ = std::make_shared<core::ImageRgba8>();
   displayIsShared_ = false;
   const auto corrections = showCorrections_ ? layer_.pixels() : std::span<const core::Vec4>{};
-  core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections, options_.exposureEv,
-                         *display_);
+  core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections,
+                         options_.exposureEv, *display_);
 }
 
 // Step 8. The analyzer keeps the picture, so the next composite goes into a new one.
@@ -207,14 +220,16 @@ void FrameLoop::feedAnalyzer() {
 }
 
 core::ImageRgb FrameLoop::linear() {
-  return core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId, layer_.pixels());
+  return core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId,
+                               layer_.pixels());
 }
 
 void FrameLoop::finishStats(Clock::time_point start, const FrameBudget& budget) {
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   stats_.frameMs.push_back(1000 * seconds);
   constexpr double kTimerSlack = 1e-3;
-  if (budget.kind == FrameBudget::Kind::deadline && seconds > budget.time.count() + kTimerSlack) ++stats_.missedDeadlines;
+  if (budget.kind == FrameBudget::Kind::deadline && seconds > budget.time.count() + kTimerSlack)
+    ++stats_.missedDeadlines;
   stats_.nonDiffusePixels = frame_->nonDiffusePixels;
   stats_.converged = layer_.converged();
   stats_.rays = pool_.rays();

@@ -1,4 +1,5 @@
-// The frame loop of Haber 2001, section 4.1: draw, warp, correct until the deadline, composite, feed the analyzer.
+// The frame loop of Haber 2001, section 4.1: draw, warp, correct until the deadline, composite, feed the
+// analyzer.
 #pragma once
 
 #include <chrono>
@@ -26,7 +27,8 @@ namespace saccade::app {
 /// What ends a frame's correction step (step 6). Exactly one of the three counts.
 struct FrameBudget {
   enum class Kind { deadline, samples, converge } kind = Kind::deadline;
-  /// deadline: time from the start of the frame. With 0 threads a virtual clock counts instead: kVirtualRaysPerSecond.
+  /// deadline: time from the start of the frame. With 0 threads a virtual clock counts instead:
+  /// kVirtualRaysPerSecond.
   std::chrono::duration<double> time{1.0 / 25};
   /// samples: the first so many samples of the inline schedule, the same on any number of threads.
   std::uint64_t samples = 0;
@@ -41,8 +43,8 @@ struct FrameLoopOptions {
   int threads = 1;  ///< tracers; 0 = every stage inline
   std::uint32_t seed = 1;
   float exposureEv = 0;
-  /// An analyzer thread follows the walk; else each new frame is analysed before it is corrected (still pictures, inline
-  /// runs), which makes the schedule a function of the frame alone.
+  /// An analyzer thread follows the walk; else each new frame is analysed before it is corrected (still
+  /// pictures, inline runs), which makes the schedule a function of the frame alone.
   bool asynchronousAnalysis = false;
 };
 
@@ -58,7 +60,8 @@ class FrameLoop {
   FrameLoop& operator=(const FrameLoop&) = delete;
 
   /// All eight steps for one frame. Throws what a worker threw. `stop` ends step 6 early.
-  void step(const core::Camera& camera, ImageSize size, const FrameBudget& budget, const std::stop_token& stop = {});
+  void step(const core::Camera& camera, ImageSize size, const FrameBudget& budget,
+            const std::stop_token& stop = {});
 
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last step
   core::ImageRgb linear();                                       ///< base + correction of the last step
@@ -118,8 +121,9 @@ class FrameLoop {
   std::shared_ptr<core::ImageRgba8> display_;
   bool displayIsShared_ = false;  ///< the analyzer may be reading display_
   double tailSeconds_ = 0;        ///< running mean of steps 7 and 8, kept free of the deadline
-  std::map<std::uint64_t, core::SampleBatch> pending_;  ///< sample budget: batches of this frame not yet taken
-  std::uint64_t nextSequence_ = 0;                      ///< sample budget: the batch to take next
+  std::map<std::uint64_t, core::SampleBatch>
+      pending_;                     ///< sample budget: batches of this frame not yet taken
+  std::uint64_t nextSequence_ = 0;  ///< sample budget: the batch to take next
   // Declared last: their threads use the channels above and must end first.
   attention::Analyzer analyzer_;
   raytrace::TracerPool pool_;

@@ -13,7 +13,8 @@ int rasterThreads(int tracers) {
 
 Headless::Headless(const RunOptions& run, const Workspace& workspace) {
   render::setSoftwareRasterThreads(rasterThreads(tracerThreads(run)));
-  context = render::makeHeadlessContext(run.context == "egl" ? render::ContextKind::egl : render::ContextKind::osmesa);
+  context = render::makeHeadlessContext(run.context == "egl" ? render::ContextKind::egl
+                                                             : render::ContextKind::osmesa);
   renderer = std::make_unique<render::BaseRenderer>(*context, workspace.scene);
   renderer->setMaps(&workspace.maps);
 }

@@ -27,7 +27,8 @@ core::ImageGray saliencyValues(const FrameLoop& loop) {
   const auto analysis = loop.analyzer().latest();
   const core::FrameSnapshot& frame = loop.frame();
   // The analyzer may not have seen a frame of this size yet.
-  if (!analysis || analysis->saliency.width() != frame.view.width() || analysis->saliency.height() != frame.view.height()) {
+  if (!analysis || analysis->saliency.width() != frame.view.width() ||
+      analysis->saliency.height() != frame.view.height()) {
     return {frame.view.width(), frame.view.height()};
   }
   return analysis->saliency;
@@ -35,9 +36,12 @@ core::ImageGray saliencyValues(const FrameLoop& loop) {
 
 float shownValue(Aov aov, const render::CorrectionLayer::Splat* splat) {
   switch (aov) {
-    case Aov::level: return splat ? splat->level : 0;
-    case Aov::thread: return splat ? static_cast<float>(splat->thread + 1) : 0;
-    default: return splat ? splat->ageFrames : -1;
+    case Aov::level:
+      return splat ? splat->level : 0;
+    case Aov::thread:
+      return splat ? static_cast<float>(splat->thread + 1) : 0;
+    default:
+      return splat ? splat->ageFrames : -1;
   }
 }
 
@@ -49,7 +53,8 @@ core::ImageGray aovValues(Aov aov, const FrameLoop& loop) {
   core::ImageGray values(frame.view.width(), frame.view.height());
   for (int y = 0; y < values.height(); ++y) {
     for (int x = 0; x < values.width(); ++x) {
-      values.at(x, y) = aov == Aov::id ? static_cast<float>(frame.idAt(x, y)) : shownValue(aov, loop.layer().shownAt(x, y));
+      values.at(x, y) =
+          aov == Aov::id ? static_cast<float>(frame.idAt(x, y)) : shownValue(aov, loop.layer().shownAt(x, y));
     }
   }
   return values;
@@ -70,11 +75,16 @@ core::ImageRgba8 aovPicture(Aov aov, const core::ImageGray& values, int maxAge) 
 
 const char* aovLegend(Aov aov) {
   switch (aov) {
-    case Aov::id: return "a colour for each non-diffuse object; black = diffuse";
-    case Aov::saliency: return "bright = salient";
-    case Aov::level: return "lattice level shown, 1 (coarse) to 7 (every pixel); black = not corrected";
-    case Aov::thread: return "a colour for each tracer thread; black = not corrected";
-    case Aov::age: return "bright = traced for this frame, dark = old; black = no sample";
+    case Aov::id:
+      return "a colour for each non-diffuse object; black = diffuse";
+    case Aov::saliency:
+      return "bright = salient";
+    case Aov::level:
+      return "lattice level shown, 1 (coarse) to 7 (every pixel); black = not corrected";
+    case Aov::thread:
+      return "a colour for each tracer thread; black = not corrected";
+    case Aov::age:
+      return "bright = traced for this frame, dark = old; black = no sample";
   }
   return "";
 }

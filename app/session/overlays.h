@@ -20,7 +20,8 @@ Aov aovByName(const std::string& name);
 /// age in camera changes, 0 = fresh, -1 = no sample.
 core::ImageGray aovValues(Aov aov, const FrameLoop& loop);
 
-/// The values in legend colours: categorical for id, level and thread, a ramp for saliency and age; no value = black.
+/// The values in legend colours: categorical for id, level and thread, a ramp for saliency and age; no value
+/// = black.
 core::ImageRgba8 aovPicture(Aov aov, const core::ImageGray& values, int maxAge);
 
 /// One line that explains the colours.

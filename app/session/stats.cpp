@@ -28,8 +28,9 @@ std::uint64_t peakBytes() {
 
 void writeStats(const std::filesystem::path& file, const RunStats& s) {
   nlohmann::ordered_json json;
-  const double mean =
-      s.frameMs.empty() ? 0 : std::accumulate(s.frameMs.begin(), s.frameMs.end(), 0.0) / static_cast<double>(s.frameMs.size());
+  const double mean = s.frameMs.empty() ? 0
+                                        : std::accumulate(s.frameMs.begin(), s.frameMs.end(), 0.0) /
+                                              static_cast<double>(s.frameMs.size());
   json["frame_ms"] = {{"mean", mean},
                       {"p50", s.framePercentileMs(0.50)},
                       {"p95", s.framePercentileMs(0.95)},
@@ -54,7 +55,8 @@ void writeStats(const std::filesystem::path& file, const RunStats& s) {
   json["renderer"] = s.renderer;
   std::ofstream stream(file);
   stream << json.dump(2) << '\n';
-  if (!stream.flush()) throw core::Error(file.string() + ": cannot be written; check the folder given to --stats");
+  if (!stream.flush())
+    throw core::Error(file.string() + ": cannot be written; check the folder given to --stats");
 }
 
 }  // namespace saccade::app

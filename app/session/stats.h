@@ -15,14 +15,15 @@ namespace saccade::app {
 struct RunStats {
   std::vector<double> frameMs;
   std::uint64_t missedDeadlines = 0;
-  std::uint64_t samplesTraced = 0;   ///< corrective samples that reached a frame as exact ones
-  std::uint64_t samplesReused = 0;   ///< cached samples warped into frames, summed over frames
-  std::uint64_t samplesDropped = 0;  ///< removed by aging or the cache's bound, or traced beyond a sample budget
+  std::uint64_t samplesTraced = 0;  ///< corrective samples that reached a frame as exact ones
+  std::uint64_t samplesReused = 0;  ///< cached samples warped into frames, summed over frames
+  std::uint64_t samplesDropped =
+      0;  ///< removed by aging or the cache's bound, or traced beyond a sample budget
   std::array<std::uint64_t, core::Lattice::kMaxLevel + 1> levels{};  ///< traced samples by lattice level
-  std::uint64_t nonDiffusePixels = 0;  ///< of the last frame
-  std::uint64_t fromDepth = 0;         ///< samples whose ray missed the named object (design fact 9)
+  std::uint64_t nonDiffusePixels = 0;                                ///< of the last frame
+  std::uint64_t fromDepth = 0;  ///< samples whose ray missed the named object (design fact 9)
   std::uint64_t rays = 0;
-  double tracingSeconds = 0;           ///< wall time in which rays were traced
+  double tracingSeconds = 0;              ///< wall time in which rays were traced
   std::map<std::string, double> stageMs;  ///< summed over frames
   bool converged = false;
   std::uint32_t seed = 1;

@@ -22,13 +22,17 @@ std::string settingsName(const SceneOptions& options, const BakeRequest& bake) {
   return name;
 }
 
-/// Maps that can be used as they are. A file that the user named is never overwritten when it belongs to another scene.
-std::optional<core::IlluminationMaps> existingMaps(const std::filesystem::path& file, std::uint64_t key, bool namedByUser) {
+/// Maps that can be used as they are. A file that the user named is never overwritten when it belongs to
+/// another scene.
+std::optional<core::IlluminationMaps> existingMaps(const std::filesystem::path& file, std::uint64_t key,
+                                                   bool namedByUser) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
     return core::readMaps(file, key);
   } catch (const core::Error& e) {
-    if (namedByUser) throw core::Error(std::string(e.what()) + "; name another file or bake it again with 'saccade bake -o'");
+    if (namedByUser)
+      throw core::Error(std::string(e.what()) +
+                        "; name another file or bake it again with 'saccade bake -o'");
     spdlog::warn("{}; baking again", e.what());
     return std::nullopt;
   }
@@ -41,19 +45,20 @@ void store(const std::filesystem::path& file, const core::IlluminationMaps& maps
     core::writeMaps(file, maps);
   } catch (const core::Error& e) {
     if (namedByUser) throw;
-    spdlog::warn("{}; going on with the maps in memory (set XDG_CACHE_HOME or --maps to keep them)", e.what());
+    spdlog::warn("{}; going on with the maps in memory (set XDG_CACHE_HOME or --maps to keep them)",
+                 e.what());
   }
 }
 
-core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options, const BakeRequest& bake,
-                               std::uint64_t key, const std::stop_token& stop) {
+core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
+                               const BakeRequest& bake, std::uint64_t key, const std::stop_token& stop) {
   ProgressBar bar("baking");
   raytrace::BakeOptions bakeOptions;
-  bakeOptions.quality = raytrace::qualityByName(options.quality);
+  bakeOptions.quality = options.quality;
   bakeOptions.photons = options.photons;
   bakeOptions.seed = bake.seed;
   bakeOptions.threads = bake.threads;
-  core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, w.scene, std::move(atlas), bakeOptions,
+  core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bakeOptions,
                                                    {[&](double fraction) { bar.show(fraction); }, stop});
   maps.key = key;
   return maps;
@@ -81,7 +86,8 @@ std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options) {
   return w;
 }
 
-std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop) {
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
+                                         const std::stop_token& stop) {
   auto w = std::make_unique<Workspace>();
   w->scene = loadSceneReported(options);
   w->plan = core::makePlan(w->scene);
@@ -95,7 +101,9 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
     w->maps = std::move(*found);
   } else {
-    if (!bake.always) spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality, file.string());
+    if (!bake.always)
+      spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
+                   file.string());
     raytrace::ChartAtlas atlas = raytrace::makeCharts(w->scene, w->plan, kMaxAtlasSize);
     core::applyCharts(w->scene, atlas.charts);
     w->world = std::make_unique<raytrace::World>(w->scene, w->plan);

@@ -36,9 +36,10 @@ struct BakeRequest {
 /// Loads the scene and prints its warnings. Throws core::Error.
 core::Scene loadSceneReported(const SceneOptions& options);
 
-/// Loads, charts, reads or bakes the maps (with a progress bar, saying so) and builds the world. Throws core::Error.
-/// `stop` ends a bake early with an error.
-std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop);
+/// Loads, charts, reads or bakes the maps (with a progress bar, saying so) and builds the world. Throws
+/// core::Error. `stop` ends a bake early with an error.
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
+                                         const std::stop_token& stop);
 
 /// Scene and world without maps: what `path` and `info` need. The world has no maps set.
 std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options);

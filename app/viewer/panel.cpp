@@ -12,15 +12,21 @@ void FrameTimes::add(float milliseconds) {
 }
 
 const std::vector<KeyHelp>& keyHelp() {
-  static const std::vector<KeyHelp> keys{
-      {"W A S D, arrows", "walk"},       {"Q / E", "down / up"},
-      {"Shift", "four times as fast"},   {"drag with left button", "look around"},
-      {"right click", "mouse-look on, Esc: off"}, {"wheel", "zoom"},
-      {"1 to 5", "overlay: IDs, saliency, level, thread, age"}, {"0", "no overlay"},
-      {"C", "corrections on / off"},     {"R", "reuse of samples on / off"},
-      {"Home", "back to the first camera"}, {"F11", "full screen"},
-      {"F12", "save a screenshot"},      {"F1", "these keys"},
-      {"Esc", "leave mouse-look; else close"}};
+  static const std::vector<KeyHelp> keys{{"W A S D, arrows", "walk"},
+                                         {"Q / E", "down / up"},
+                                         {"Shift", "four times as fast"},
+                                         {"drag with left button", "look around"},
+                                         {"right click", "mouse-look on, Esc: off"},
+                                         {"wheel", "zoom"},
+                                         {"1 to 5", "overlay: IDs, saliency, level, thread, age"},
+                                         {"0", "no overlay"},
+                                         {"C", "corrections on / off"},
+                                         {"R", "reuse of samples on / off"},
+                                         {"Home", "back to the first camera"},
+                                         {"F11", "full screen"},
+                                         {"F12", "save a screenshot"},
+                                         {"F1", "these keys"},
+                                         {"Esc", "leave mouse-look; else close"}};
   return keys;
 }
 
@@ -67,10 +73,12 @@ void drawFrameTimes(const PanelState& s, const FrameTimes& times) {
 void drawCounts(const FrameLoop& loop) {
   const RunStats& stats = loop.stats();
   const std::uint32_t pixels = loop.frame().nonDiffusePixels;
-  const float done = pixels > 0 ? static_cast<float>(loop.layer().exactCount()) / static_cast<float>(pixels) : 1.0f;
+  const float done =
+      pixels > 0 ? static_cast<float>(loop.layer().exactCount()) / static_cast<float>(pixels) : 1.0f;
   ImGui::ProgressBar(done, ImVec2(kPanelWidth - 30, 0), loop.converged() ? "converged" : nullptr);
-  ImGui::Text("new samples a frame: %llu",
-              static_cast<unsigned long long>(stats.samplesPerFrame.empty() ? 0 : stats.samplesPerFrame.back()));
+  ImGui::Text(
+      "new samples a frame: %llu",
+      static_cast<unsigned long long>(stats.samplesPerFrame.empty() ? 0 : stats.samplesPerFrame.back()));
   ImGui::Text("cached samples: %zu", loop.cache().size());
   ImGui::Text("non-diffuse pixels: %u", pixels);
 }
@@ -78,7 +86,8 @@ void drawCounts(const FrameLoop& loop) {
 void drawKeys(PanelState& s, int height) {
   ImGui::SetNextWindowPos(ImVec2(20, 20), ImGuiCond_Always);
   ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(600, static_cast<float>(height) - 40));
-  if (ImGui::Begin("Keys (F1)", &s.showKeys, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+  if (ImGui::Begin("Keys (F1)", &s.showKeys,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
     for (const KeyHelp& line : keyHelp()) {
       ImGui::TextUnformatted(line.keys);
       ImGui::SameLine(190);
@@ -90,10 +99,12 @@ void drawKeys(PanelState& s, int height) {
 
 }  // namespace
 
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth, int framebufferHeight) {
+void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth,
+               int framebufferHeight) {
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(framebufferWidth - kPanelWidth), 0));
   ImGui::SetNextWindowSize(ImVec2(kPanelWidth, static_cast<float>(framebufferHeight)));
-  ImGui::Begin("Saccade", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  ImGui::Begin("Saccade", nullptr,
+               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   ImGui::PushItemWidth(kPanelWidth - 90);
   drawControls(state);
   ImGui::Separator();

@@ -1,4 +1,5 @@
-// The panel at the window's side: what the user sets, and what the frame loop reports. Dear ImGui 1.86, no docking.
+// The panel at the window's side: what the user sets, and what the frame loop reports. Dear ImGui 1.86, no
+// docking.
 #pragma once
 
 #include <optional>
@@ -44,7 +45,9 @@ struct KeyHelp {
 };
 const std::vector<KeyHelp>& keyHelp();
 
-/// Between ImguiLayer::newFrame and render. The panel takes the right `kPanelWidth` pixels of the framebuffer.
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth, int framebufferHeight);
+/// Between ImguiLayer::newFrame and render. The panel takes the right `kPanelWidth` pixels of the
+/// framebuffer.
+void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth,
+               int framebufferHeight);
 
 }  // namespace saccade::app

@@ -29,7 +29,9 @@ using render::Key;
 
 constexpr std::chrono::milliseconds kMinimisedPause{20};
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// One window's life. Members are in the order in which they depend on one another.
 class Viewer {
@@ -41,7 +43,8 @@ class Viewer {
         presenter_(window_.context()),
         imgui_(window_),
         loop_(workspace, renderer_,
-              {options.corrective, std::max(1, tracerThreads(options.run)), options.run.seed, options.run.exposureEv, true}),
+              {options.corrective, std::max(1, tracerThreads(options.run)), options.run.seed,
+               options.run.exposureEv, true}),
         home_(chooseCamera(workspace.scene, options.camera)),
         walker_(home_, workspace.scene.bounds.diagonal()) {
     renderer_.setMaps(&workspace.maps);
@@ -100,7 +103,8 @@ class Viewer {
     imgui_.newFrame(window_.width(), window_.height());
     drawPanel(panel_, loop_, times_, window_.width(), window_.height());
     imgui_.render();
-    if (closing_ && !options_.uiScreenshot.empty()) core::writePng(options_.uiScreenshot, window_.screenshot());
+    if (closing_ && !options_.uiScreenshot.empty())
+      core::writePng(options_.uiScreenshot, window_.screenshot());
     if (panel_.screenshotWanted) saveScreenshot(*shown);
     window_.swap();
   }
@@ -131,8 +135,8 @@ class Viewer {
       return static_cast<float>(window_.isDown(plus)) - static_cast<float>(window_.isDown(minus));
     };
     walker_.move({std::clamp(axis(Key::w, Key::s) + axis(Key::up, Key::down), -1.0f, 1.0f),
-                  std::clamp(axis(Key::d, Key::a) + axis(Key::right, Key::left), -1.0f, 1.0f), axis(Key::e, Key::q),
-                  window_.isDown(Key::shift)},
+                  std::clamp(axis(Key::d, Key::a) + axis(Key::right, Key::left), -1.0f, 1.0f),
+                  axis(Key::e, Key::q), window_.isDown(Key::shift)},
                  elapsed);
   }
 
@@ -147,13 +151,27 @@ class Viewer {
   void handle(const render::KeyEvent& e) {
     if (!e.pressed || e.repeat) return;
     switch (e.key) {
-      case Key::f1: panel_.showKeys = !panel_.showKeys; break;
-      case Key::f11: window_.setFullscreen(!window_.fullscreen()); break;
-      case Key::f12: panel_.screenshotWanted = true; break;
-      case Key::c: panel_.corrections = !panel_.corrections; break;
-      case Key::r: panel_.reuse = !panel_.reuse; break;
-      case Key::home: walker_.setCamera(home_); break;
-      case Key::digit0: panel_.overlay.reset(); break;
+      case Key::f1:
+        panel_.showKeys = !panel_.showKeys;
+        break;
+      case Key::f11:
+        window_.setFullscreen(!window_.fullscreen());
+        break;
+      case Key::f12:
+        panel_.screenshotWanted = true;
+        break;
+      case Key::c:
+        panel_.corrections = !panel_.corrections;
+        break;
+      case Key::r:
+        panel_.reuse = !panel_.reuse;
+        break;
+      case Key::home:
+        walker_.setCamera(home_);
+        break;
+      case Key::digit0:
+        panel_.overlay.reset();
+        break;
       case Key::escape:
         if (window_.mouseCaptured()) {
           window_.setMouseCaptured(false);
@@ -180,7 +198,9 @@ class Viewer {
   }
   void handle(const render::CloseEvent&) { open_ = false; }
   void handle(const render::ResizeEvent&) {}  // the size is asked for every frame
-  void handle(const render::DropEvent&) { panel_.message = "to open another scene, start saccade walk with it"; }
+  void handle(const render::DropEvent&) {
+    panel_.message = "to open another scene, start saccade walk with it";
+  }
 
   const WalkOptions& options_;
   render::Window window_;

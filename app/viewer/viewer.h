@@ -6,8 +6,8 @@
 
 namespace saccade::app {
 
-/// Runs until the window is closed. Main thread only. Returns the exit status. Throws core::Error when there is no display,
-/// saying how to walk off screen.
+/// Runs until the window is closed. Main thread only. Returns the exit status. Throws core::Error when there
+/// is no display, saying how to walk off screen.
 int runViewer(const WalkOptions& options, const Workspace& workspace);
 
 }  // namespace saccade::app

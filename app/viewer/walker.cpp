@@ -49,7 +49,8 @@ void Walker::zoom(float steps) {
 }
 
 void Walker::updateTarget() {
-  camera_.at = camera_.eye + core::Vec3(std::cos(pitch_) * std::sin(yaw_), std::sin(pitch_), -std::cos(pitch_) * std::cos(yaw_));
+  camera_.at = camera_.eye + core::Vec3(std::cos(pitch_) * std::sin(yaw_), std::sin(pitch_),
+                                        -std::cos(pitch_) * std::cos(yaw_));
   camera_.up = {0, 1, 0};
 }
 

@@ -1,6 +1,6 @@
-// Does the frame rate hold in the museum hall? 512x512, moving along the bundled path, at the paper's 8 frames a second
-// and at 25, beside the bare draw of the same triangles (draw and read-back only, no tracers). The runs alternate.
-// Usage: bench_gallery_walk [REPEATS] [SECONDS] [TRACERS]
+// Does the frame rate hold in the museum hall? 512x512, moving along the bundled path, at the paper's 8
+// frames a second and at 25, beside the bare draw of the same triangles (draw and read-back only, no
+// tracers). The runs alternate. Usage: bench_gallery_walk [REPEATS] [SECONDS] [TRACERS]
 #include <cstdlib>
 
 #include "bench/common.h"
@@ -15,8 +15,8 @@ struct WalkResult {
   double samplesP50 = 0, samplesMin = 0;
 };
 
-WalkResult walk(const app::Workspace& workspace, render::BaseRenderer& renderer, const app::CameraPath& path, double fps,
-                double seconds, int tracers) {
+WalkResult walk(const app::Workspace& workspace, render::BaseRenderer& renderer, const app::CameraPath& path,
+                double fps, double seconds, int tracers) {
   app::FrameLoop loop(workspace, renderer, {.threads = tracers, .asynchronousAnalysis = true});
   const int frames = static_cast<int>(seconds * fps);
   const auto budget = app::FrameBudget::untilDeadline(std::chrono::duration<double>(1 / fps));
@@ -29,10 +29,12 @@ WalkResult walk(const app::Workspace& workspace, render::BaseRenderer& renderer,
   return result;
 }
 
-double bareDrawMs(const app::Workspace& workspace, render::BaseRenderer& renderer, const app::CameraPath& path, int frames) {
+double bareDrawMs(const app::Workspace& workspace, render::BaseRenderer& renderer,
+                  const app::CameraPath& path, int frames) {
   std::vector<double> ms;
   for (int i = 0; i < frames; ++i) {
-    const core::View view(path.at(path.lengthSeconds() * i / frames), kSize.width, kSize.height, workspace.scene.bounds);
+    const core::View view(path.at(path.lengthSeconds() * i / frames), kSize.width, kSize.height,
+                          workspace.scene.bounds);
     ms.push_back(1000 * timed([&] { renderer.render(view, static_cast<std::uint64_t>(i) + 1, 10); }));
   }
   return spread(ms).median;
@@ -40,11 +42,14 @@ double bareDrawMs(const app::Workspace& workspace, render::BaseRenderer& rendere
 
 void printWalk(double fps, const WalkResult& r) {
   const double budget = 1000 / fps;
-  std::printf("%2.0f fps (budget %.0f ms): p50 %.1f, p95 %.1f, p99 %.1f ms, p95/budget %.3f; missed %llu of %zu; new samples a "
-              "frame: median %.0f, least %.0f\n",
-              fps, budget, r.stats.framePercentileMs(0.5), r.stats.framePercentileMs(0.95), r.stats.framePercentileMs(0.99),
-              r.stats.framePercentileMs(0.95) / budget, static_cast<unsigned long long>(r.stats.missedDeadlines),
-              r.stats.frameMs.size(), r.samplesP50, r.samplesMin);
+  std::printf(
+      "%2.0f fps (budget %.0f ms): p50 %.1f, p95 %.1f, p99 %.1f ms, p95/budget %.3f; missed %llu of %zu; new "
+      "samples a "
+      "frame: median %.0f, least %.0f\n",
+      fps, budget, r.stats.framePercentileMs(0.5), r.stats.framePercentileMs(0.95),
+      r.stats.framePercentileMs(0.99), r.stats.framePercentileMs(0.95) / budget,
+      static_cast<unsigned long long>(r.stats.missedDeadlines), r.stats.frameMs.size(), r.samplesP50,
+      r.samplesMin);
   std::printf("   ms a frame:");
   for (const auto& [stage, ms] : r.stats.stageMs) {
     std::printf(" %s %.2f", stage.c_str(), ms / static_cast<double>(r.stats.frameMs.size()));
@@ -68,7 +73,8 @@ int run(int argc, char** argv) {
   bareDrawMs(*workspace, *gl.renderer, path, 20);  // warm-up
   for (int i = 0; i < repeats; ++i) {
     std::printf("bare draw and read-back: %.1f ms\n", bareDrawMs(*workspace, *gl.renderer, path, 50));
-    for (const double fps : {8.0, 25.0}) printWalk(fps, walk(*workspace, *gl.renderer, path, fps, seconds, tracers));
+    for (const double fps : {8.0, 25.0})
+      printWalk(fps, walk(*workspace, *gl.renderer, path, fps, seconds, tracers));
   }
   return 0;
 }

@@ -1,14 +1,15 @@
-// Iterative against recursive generation of the square-root-of-five lattice (Haber 2001, section 4.3: "about eight times
-// faster"). Both visit every pixel of a box once, level by level from 1 to 7; a checksum keeps the work from vanishing.
-// The recursive method is the paper's starting point: from each point of level l its four new neighbours of level l + 1,
-// p + R u, with u the spawning vector in floating point, clipped against the box.
-// Usage: bench_lattice [SIDE] [REPEATS]
+// Iterative against recursive generation of the square-root-of-five lattice (Haber 2001, section 4.3: "about
+// eight times faster"). Both visit every pixel of a box once, level by level from 1 to 7; a checksum keeps
+// the work from vanishing. The recursive method is the paper's starting point: from each point of level l its
+// four new neighbours of level l + 1, p + R u, with u the spawning vector in floating point, clipped against
+// the box. Usage: bench_lattice [SIDE] [REPEATS]
+#include "core/corrective/lattice.h"
+
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
 #include "bench/common.h"
-#include "core/corrective/lattice.h"
 
 namespace saccade::bench {
 namespace {
@@ -27,7 +28,8 @@ struct Tally {
 Tally iterative(const PixelBox& box) {
   Tally tally;
   for (int level = 1; level <= Lattice::kMaxLevel; ++level) {
-    core::walkLattice(box, core::beginLevel(box, level), box.area(), true, [&](int x, int y) { tally.add(x, y); });
+    core::walkLattice(box, core::beginLevel(box, level), box.area(), true,
+                      [&](int x, int y) { tally.add(x, y); });
   }
   return tally;
 }
@@ -36,7 +38,8 @@ struct Vector {
   double x, y;
 };
 
-/// The points that are new in level `target` below one point of `level`: the point itself carries on, four are spawned.
+/// The points that are new in level `target` below one point of `level`: the point itself carries on, four
+/// are spawned.
 void recurse(const PixelBox& box, Vector p, Vector u, int level, int target, bool isNew, Tally& tally) {
   // The subtree of a point reaches no further than the sum of the shrinking steps below it.
   const double reach = std::hypot(u.x, u.y);
@@ -57,7 +60,8 @@ Tally recursive(const PixelBox& box) {
   // (2 - i)^6: the spawning vector of level 1, so that level 7 has step 1.
   Vector u{1, 0};
   for (int i = 1; i < Lattice::kMaxLevel; ++i) u = {2 * u.x + u.y, 2 * u.y - u.x};
-  const int span = static_cast<int>(std::ceil((box.x1 - box.x0 + box.y1 - box.y0) / std::hypot(u.x, u.y))) + 2;
+  const int span =
+      static_cast<int>(std::ceil((box.x1 - box.x0 + box.y1 - box.y0) / std::hypot(u.x, u.y))) + 2;
   for (int target = 1; target <= Lattice::kMaxLevel; ++target) {
     for (int j = -span; j <= span; ++j) {
       for (int i = -span; i <= span; ++i) {
@@ -75,8 +79,9 @@ int run(int argc, char** argv) {
   const PixelBox box{0, 0, side, side};
   const Tally a = iterative(box), b = recursive(box);
   if (a.points != b.points || a.sum != b.sum || a.points != static_cast<std::uint64_t>(box.area())) {
-    std::printf("the two methods disagree: %llu and %llu points of %lld\n", static_cast<unsigned long long>(a.points),
-                static_cast<unsigned long long>(b.points), static_cast<long long>(box.area()));
+    std::printf("the two methods disagree: %llu and %llu points of %lld\n",
+                static_cast<unsigned long long>(a.points), static_cast<unsigned long long>(b.points),
+                static_cast<long long>(box.area()));
     return 1;
   }
   std::vector<double> fast, slow, ratio;
@@ -89,8 +94,10 @@ int run(int argc, char** argv) {
   }
   const double n = static_cast<double>(a.points);
   const Spread r = spread(ratio);
-  std::printf("%dx%d, all levels: iterative %.2f ns a point, recursive %.2f ns, ratio %.1f (%.1f to %.1f); the paper: about 8\n",
-              side, side, 1e9 * spread(fast).median / n, 1e9 * spread(slow).median / n, r.median, r.min, r.max);
+  std::printf(
+      "%dx%d, all levels: iterative %.2f ns a point, recursive %.2f ns, ratio %.1f (%.1f to %.1f); the "
+      "paper: about 8\n",
+      side, side, 1e9 * spread(fast).median / n, 1e9 * spread(slow).median / n, r.median, r.min, r.max);
   return 0;
 }
 

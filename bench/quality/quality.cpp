@@ -1,8 +1,8 @@
 // How far is the converged picture from the path-traced one, and what is the rest made of?
-// For a scene at 256x256: `corrective --converge` against `path`, as FLIP and relative MSE, then with one cause after
-// another taken away: glossy noise (64 sub-samples), aliasing (rendered four times as large and box-filtered down), and the
-// base layer alone against the path tracer's diffuse transport, on diffuse pixels (the maps).
-// Usage: bench_quality SCENE.glb [PATH_SPP] [QUALITY]
+// For a scene at 256x256: `corrective --converge` against `path`, as FLIP and relative MSE, then with one
+// cause after another taken away: glossy noise (64 sub-samples), aliasing (rendered four times as large and
+// box-filtered down), and the base layer alone against the path tracer's diffuse transport, on diffuse pixels
+// (the maps). Usage: bench_quality SCENE.glb [PATH_SPP] [QUALITY]
 #include <cstdlib>
 
 #include "bench/common.h"
@@ -20,7 +20,8 @@ constexpr int kOversampling = 4;
 core::ImageRgb boxFiltered(const core::ImageRgb& large, int factor) {
   core::ImageRgb small(large.width() / factor, large.height() / factor);
   for (int y = 0; y < large.height(); ++y) {
-    for (int x = 0; x < large.width(); ++x) small.at(x / factor, y / factor) += large.at(x, y) / static_cast<float>(factor * factor);
+    for (int x = 0; x < large.width(); ++x)
+      small.at(x / factor, y / factor) += large.at(x, y) / static_cast<float>(factor * factor);
   }
   return small;
 }
@@ -31,7 +32,9 @@ struct Renderer {
   core::Camera camera;
   int threads;
 
-  core::FramePtr base(int side) { return gl.renderer->render(core::View(camera, side, side, workspace.scene.bounds), 1, 10); }
+  core::FramePtr base(int side) {
+    return gl.renderer->render(core::View(camera, side, side, workspace.scene.bounds), 1, 10);
+  }
 
   core::ImageRgb converged(int side, int subSamples) {
     app::FrameLoopOptions options;
@@ -48,8 +51,8 @@ struct Renderer {
     options.transport = transport;
     options.threads = threads;
     app::ProgressBar bar("path tracing");
-    return raytrace::tracePaths(*workspace.world, core::View(camera, kSide, kSide, workspace.scene.bounds), options,
-                                {[&](double f) { bar.show(f); }, app::interruptToken()})
+    return raytrace::tracePaths(*workspace.world, core::View(camera, kSide, kSide, workspace.scene.bounds),
+                                options, {[&](double f) { bar.show(f); }, app::interruptToken()})
         .radiance;
   }
 };
@@ -79,7 +82,8 @@ int run(int argc, char** argv) {
   const core::ImageRgb reference = r.path(spp, raytrace::Transport::all);
   const core::ImageRgb half = r.path(std::max(1, spp / 4), raytrace::Transport::all);
   std::printf("%s, %dx%d, reference of %d samples a pixel\n", scene.c_str(), kSide, kSide, spp);
-  print("the reference's own noise (a quarter of its samples against it)", core::compareLinear(reference, half));
+  print("the reference's own noise (a quarter of its samples against it)",
+        core::compareLinear(reference, half));
   print("corrective --converge", core::compareLinear(reference, r.converged(kSide, 1)));
   print("  without glossy noise (--spp 64)", core::compareLinear(reference, r.converged(kSide, 64)));
   const core::ImageRgb smooth = boxFiltered(r.converged(kSide * kOversampling, 4), kOversampling);
@@ -88,7 +92,8 @@ int run(int argc, char** argv) {
   const core::ImageRgb base = core::compositeLinear(kSide, kSide, frame->baseAndId, {});
   print("maps: base against all light, diffuse pixels only",
         core::compareLinear(diffuseOnly(*frame, reference), diffuseOnly(*frame, base)));
-  std::printf("lobes left out: mean albedo %.4f of the objects treated as diffuse\n", workspace->plan.diffuseEnergyLeftOut);
+  std::printf("lobes left out: mean albedo %.4f of the objects treated as diffuse\n",
+              workspace->plan.diffuseEnergyLeftOut);
   return 0;
 }
 

@@ -1,7 +1,7 @@
-// Samples that reach the frame in a correction step of 50 ms with 1, 2, 4 and 6 tracers, beside Haber 2001, section 5
-// (2 processors 500-800, 4: 1,000-1,500, 6: 1,500-2,500). The camera moves, so that every frame starts anew; drawing and
-// warping happen outside the 50 ms, as in the paper's figure.
-// Usage: bench_tracers [SCENE.glb PATH.json] [FRAMES]
+// Samples that reach the frame in a correction step of 50 ms with 1, 2, 4 and 6 tracers, beside Haber 2001,
+// section 5 (2 processors 500-800, 4: 1,000-1,500, 6: 1,500-2,500). The camera moves, so that every frame
+// starts anew; drawing and warping happen outside the 50 ms, as in the paper's figure. Usage: bench_tracers
+// [SCENE.glb PATH.json] [FRAMES]
 #include <cstdlib>
 
 #include "bench/common.h"
@@ -29,8 +29,8 @@ int run(int argc, char** argv) {
       rays.push_back(static_cast<double>(loop.stats().rays - raysBefore));
     }
     const Spread s = spread(samples);
-    std::printf("%d tracers: %.0f samples in 50 ms (%.0f to %.0f), %.0f rays\n", tracers, s.median, s.min, s.max,
-                spread(rays).median);
+    std::printf("%d tracers: %.0f samples in 50 ms (%.0f to %.0f), %.0f rays\n", tracers, s.median, s.min,
+                s.max, spread(rays).median);
   }
   return 0;
 }

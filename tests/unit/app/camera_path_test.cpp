@@ -51,10 +51,11 @@ TEST(CameraPath, AnOrbitKeepsItsRadiusAndComesBack) {
 }
 
 TEST(CameraPath, BadFilesAreRefusedNamingTheKey) {
-  for (const char* text : {"", "{", "{}", "[]", "[1]", R"([{"t":0,"eye":[0,0],"at":[0,0,1]}])",
-                           R"([{"t":0,"eye":[0,0,0],"at":[0,0,0]}])", R"([{"t":0,"eye":[0,0,1],"at":[0,0,0],"fov":180}])",
-                           R"([{"eye":[0,0,1],"at":[0,0,0]}])", R"([{"t":1e999,"eye":[0,0,1],"at":[0,0,0]}])",
-                           R"([{"t":1,"eye":[0,0,1],"at":[0,0,0]},{"t":1,"eye":[0,0,1],"at":[0,0,0]}])"}) {
+  for (const char* text :
+       {"", "{", "{}", "[]", "[1]", R"([{"t":0,"eye":[0,0],"at":[0,0,1]}])",
+        R"([{"t":0,"eye":[0,0,0],"at":[0,0,0]}])", R"([{"t":0,"eye":[0,0,1],"at":[0,0,0],"fov":180}])",
+        R"([{"eye":[0,0,1],"at":[0,0,0]}])", R"([{"t":1e999,"eye":[0,0,1],"at":[0,0,0]}])",
+        R"([{"t":1,"eye":[0,0,1],"at":[0,0,0]},{"t":1,"eye":[0,0,1],"at":[0,0,0]}])"}) {
     EXPECT_THROW(CameraPath::read(fileWith(text)), core::Error) << text;
   }
   EXPECT_THROW(CameraPath::read("/no/such/file.json"), core::Error);
@@ -67,7 +68,8 @@ TEST(Walker, TurningByAFullCircleComesBack) {
   Walker walker(camera, 20);
   const float pixels = 2 * core::kPi / 0.003f;
   for (int i = 0; i < 8; ++i) walker.look(pixels / 8, 0);
-  EXPECT_NEAR(glm::length(glm::normalize(walker.camera().at - walker.camera().eye) - core::Vec3(0, 0, -1)), 0, 1e-4);
+  EXPECT_NEAR(glm::length(glm::normalize(walker.camera().at - walker.camera().eye) - core::Vec3(0, 0, -1)), 0,
+              1e-4);
   EXPECT_EQ(walker.camera().eye, camera.eye);
 }
 

@@ -1,4 +1,5 @@
-// The command line as a stranger and a script meet it: exit statuses, one error line, names that others rely on.
+// The command line as a stranger and a script meet it: exit statuses, one error line, names that others rely
+// on.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -27,12 +28,13 @@ std::string slurp(const std::filesystem::path& file) {
 /// Runs `saccade ARGUMENTS` through the shell, with its own cache folder.
 Ran saccade(const std::string& arguments) {
   const std::filesystem::path errors = tests::temporaryFolder() / "stderr.txt";
-  const std::string command = "XDG_CACHE_HOME='" + (tests::temporaryFolder() / "cache").string() + "' '" SACCADE_BINARY "' " +
-                              arguments + " 2>'" + errors.string() + "'";
+  const std::string command = "XDG_CACHE_HOME='" + (tests::temporaryFolder() / "cache").string() +
+                              "' '" SACCADE_BINARY "' " + arguments + " 2>'" + errors.string() + "'";
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer{};
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) ran.out.append(buffer.data(), n);
+  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    ran.out.append(buffer.data(), n);
   const int status = pclose(pipe);
   ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   ran.err = slurp(errors);
@@ -47,14 +49,17 @@ const std::string kQuick = " --quality preview --size 96x64 ";
 
 int errorLines(const std::string& err) {
   int n = 0;
-  for (std::size_t at = err.find("saccade: error: "); at != std::string::npos; at = err.find("saccade: error: ", at + 1)) ++n;
+  for (std::size_t at = err.find("saccade: error: "); at != std::string::npos;
+       at = err.find("saccade: error: ", at + 1))
+    ++n;
   return n;
 }
 
 TEST(Cli, WrongUsageIsStatusTwoWithAHint) {
-  for (const char* arguments : {"", "frobnicate", "render", "render a.glb", "render a.glb -o b.png --frobnicate",
-                                "info a.glb --unit-scale 0", "render a.glb -o b.png --size 12", "render a.glb -o b.txt",
-                                "render a.glb -o b.png --order sideways", "render a.glb -o b.png --samples 3 --converge"}) {
+  for (const char* arguments :
+       {"", "frobnicate", "render", "render a.glb", "render a.glb -o b.png --frobnicate",
+        "info a.glb --unit-scale 0", "render a.glb -o b.png --size 12", "render a.glb -o b.txt",
+        "render a.glb -o b.png --order sideways", "render a.glb -o b.png --samples 3 --converge"}) {
     const Ran ran = saccade(arguments);
     EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.err;
     EXPECT_EQ(errorLines(ran.err), 1) << arguments << "\n" << ran.err;
@@ -65,9 +70,9 @@ TEST(Cli, WrongUsageIsStatusTwoWithAHint) {
 TEST(Cli, FailuresAreStatusOneAndOneLine) {
   const std::filesystem::path empty = output("empty.glb");
   std::ofstream(empty).close();
-  for (const std::string& arguments :
-       {std::string("info /no/such/scene.glb"), "info " + quoted(empty), "render /no/such.obj -o " + quoted(output("x.png")),
-        "render " + kCornell + " -o /no/such/folder/x.png" + kQuick}) {
+  for (const std::string& arguments : {std::string("info /no/such/scene.glb"), "info " + quoted(empty),
+                                       "render /no/such.obj -o " + quoted(output("x.png")),
+                                       "render " + kCornell + " -o /no/such/folder/x.png" + kQuick}) {
     const Ran ran = saccade(arguments);
     EXPECT_EQ(ran.status, 1) << arguments << "\n" << ran.err;
     EXPECT_EQ(errorLines(ran.err), 1) << arguments << "\n" << ran.err;
@@ -90,20 +95,23 @@ TEST(Cli, InfoAsJsonHasThePromisedKeys) {
   const Ran ran = saccade("info " + kCornell + " --json");
   ASSERT_EQ(ran.status, 0) << ran.err;
   const nlohmann::json json = nlohmann::json::parse(ran.out);
-  for (const char* key : {"objects", "triangles", "materials", "lights", "cameras", "bounds", "warnings", "plan"}) {
+  for (const char* key :
+       {"objects", "triangles", "materials", "lights", "cameras", "bounds", "warnings", "plan"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   for (const auto& line : json["plan"]) {
-    EXPECT_TRUE(line.contains("stage") && line["on"].is_boolean() && !line["reason"].get<std::string>().empty());
+    EXPECT_TRUE(line.contains("stage") && line["on"].is_boolean() &&
+                !line["reason"].get<std::string>().empty());
   }
 }
 
 TEST(Cli, RenderBakesByItselfOnceAndConvergesToRaytrace) {
-  const Ran first = saccade("render " + kCornell + kQuick + "--method corrective --converge -o " + quoted(output("c.exr")) +
-                            " --stats " + quoted(output("c.json")));
+  const Ran first = saccade("render " + kCornell + kQuick + "--method corrective --converge -o " +
+                            quoted(output("c.exr")) + " --stats " + quoted(output("c.json")));
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_NE(first.err.find("baking"), std::string::npos) << "says so: " << first.err;
-  const Ran second = saccade("render " + kCornell + kQuick + "--method raytrace -o " + quoted(output("r.exr")));
+  const Ran second =
+      saccade("render " + kCornell + kQuick + "--method raytrace -o " + quoted(output("r.exr")));
   ASSERT_EQ(second.status, 0) << second.err;
   EXPECT_EQ(second.err.find("baking"), std::string::npos) << "the maps were there: " << second.err;
   const Ran compared = saccade("compare --json " + quoted(output("r.exr")) + " " + quoted(output("c.exr")));
@@ -114,8 +122,9 @@ TEST(Cli, RenderBakesByItselfOnceAndConvergesToRaytrace) {
   }
   EXPECT_EQ(json["max_abs"].get<double>(), 0);
   const nlohmann::json stats = nlohmann::json::parse(slurp(output("c.json")));
-  for (const char* key : {"frame_ms", "missed_deadlines", "frames", "samples", "levels", "nondiffuse_pixels", "rays",
-                          "rays_per_second", "stages_ms", "peak_bytes", "converged", "seed", "threads", "context", "renderer"}) {
+  for (const char* key : {"frame_ms", "missed_deadlines", "frames", "samples", "levels", "nondiffuse_pixels",
+                          "rays", "rays_per_second", "stages_ms", "peak_bytes", "converged", "seed",
+                          "threads", "context", "renderer"}) {
     EXPECT_TRUE(stats.contains(key)) << key;
   }
   EXPECT_EQ(stats["samples"]["traced"], stats["nondiffuse_pixels"]);
@@ -123,8 +132,9 @@ TEST(Cli, RenderBakesByItselfOnceAndConvergesToRaytrace) {
 }
 
 TEST(Cli, EveryMethodAndAovWritesAPicture) {
-  for (const char* extra : {"--method base", "--method path --spp 2", "--aov id", "--aov level", "--aov thread", "--aov age",
-                            "--aov saliency", "--samples 50", "--budget-ms 5", "--lobes diffuse --method path --spp 1"}) {
+  for (const char* extra :
+       {"--method base", "--method path --spp 2", "--aov id", "--aov level", "--aov thread", "--aov age",
+        "--aov saliency", "--samples 50", "--budget-ms 5", "--lobes diffuse --method path --spp 1"}) {
     for (const char* name : {"picture.png", "picture.exr"}) {
       std::filesystem::remove(output(name));
       const Ran ran = saccade("render " + kCornell + kQuick + extra + " -o " + quoted(output(name)));
@@ -139,15 +149,17 @@ TEST(Cli, PathsMayHoldSpacesAndOtherAlphabets) {
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(tests::bundled("cornell.glb"), folder / "ein Raum.glb",
                              std::filesystem::copy_options::overwrite_existing);
-  const Ran ran = saccade("render " + quoted(folder / "ein Raum.glb") + kQuick + "--method base -o " + quoted(folder / "Bild é.png"));
+  const Ran ran = saccade("render " + quoted(folder / "ein Raum.glb") + kQuick + "--method base -o " +
+                          quoted(folder / "Bild é.png"));
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "Bild é.png"));
 }
 
 TEST(Cli, WalkOffScreenWritesFramesAndStats) {
   const std::filesystem::path frames = output("frames");
-  const Ran ran = saccade("walk " + kCornell + kQuick + "--headless --orbit --fps 20 --seconds 0.5 --frames " + quoted(frames) +
-                          " --converge -o " + quoted(output("last.exr")) + " --stats " + quoted(output("walk.json")));
+  const Ran ran = saccade(
+      "walk " + kCornell + kQuick + "--headless --orbit --fps 20 --seconds 0.5 --frames " + quoted(frames) +
+      " --converge -o " + quoted(output("last.exr")) + " --stats " + quoted(output("walk.json")));
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(frames), {}), 10);
   EXPECT_EQ(core::readImage8(frames / "frame_00009.png").width(), 96);
@@ -169,8 +181,8 @@ TEST(Cli, MapsOfAnotherSceneAreRefusedNotOverwritten) {
   const std::filesystem::path maps = output("cornell.maps");
   ASSERT_EQ(saccade("bake " + kCornell + " --quality preview --photons 20000 -o " + quoted(maps)).status, 0);
   const auto before = std::filesystem::last_write_time(maps);
-  const Ran ran = saccade("render " + quoted(tests::bundled("table.glb")) + kQuick + "--maps " + quoted(maps) +
-                          " --method base -o " + quoted(output("t.png")));
+  const Ran ran = saccade("render " + quoted(tests::bundled("table.glb")) + kQuick + "--maps " +
+                          quoted(maps) + " --method base -o " + quoted(output("t.png")));
   EXPECT_EQ(ran.status, 1) << ran.err;
   EXPECT_EQ(std::filesystem::last_write_time(maps), before);
 }

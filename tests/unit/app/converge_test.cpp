@@ -18,7 +18,7 @@ using app::ImageSize;
 
 struct SceneCase {
   const char* name;
-  bool shared;       ///< under the shared folder
+  bool shared;  ///< under the shared folder
   float unitScale = 1;
 };
 
@@ -91,11 +91,14 @@ TEST_F(LoopTest, APerturbedSampleIsSeenInTheConvergedImage) {
 }
 
 TEST_F(LoopTest, ShuffledArrivalGivesTheSameImageAtEveryMoment) {
-  // The same samples in another order: within each batch, and the batches of a frame reversed by the sample budget's cut.
+  // The same samples in another order: within each batch, and the batches of a frame reversed by the sample
+  // budget's cut.
   FrameLoop ordered(workspace_, *gl_.renderer, {.threads = 0});
   FrameLoop shuffled(workspace_, *gl_.renderer, {.threads = 0});
   std::mt19937 random(7);
-  shuffled.onBatch = [&](core::SampleBatch& batch) { std::shuffle(batch.samples.begin(), batch.samples.end(), random); };
+  shuffled.onBatch = [&](core::SampleBatch& batch) {
+    std::shuffle(batch.samples.begin(), batch.samples.end(), random);
+  };
   for (int i = 0; i < 4; ++i) {
     ordered.step(camera_, size_, FrameBudget::firstSamples(300));
     shuffled.step(camera_, size_, FrameBudget::firstSamples(300));
@@ -119,7 +122,8 @@ TEST_F(LoopTest, TheFirstSamplesAreTheSameOnAnyNumberOfThreads) {
 
 TEST_F(LoopTest, SampleBudgetsOfSeveralFramesAddUpToConvergence) {
   FrameLoop loop(workspace_, *gl_.renderer, {.threads = 2});
-  for (int i = 0; i < 1000 && !loop.converged(); ++i) loop.step(camera_, size_, FrameBudget::firstSamples(501));
+  for (int i = 0; i < 1000 && !loop.converged(); ++i)
+    loop.step(camera_, size_, FrameBudget::firstSamples(501));
   ASSERT_TRUE(loop.converged());
   EXPECT_EQ(loop.stats().samplesTraced, loop.frame().nonDiffusePixels);
   EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);

@@ -1,4 +1,5 @@
-// Scenes opened once per test program, with small maps: the promise of convergence does not depend on their quality.
+// Scenes opened once per test program, with small maps: the promise of convergence does not depend on their
+// quality.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -62,7 +63,8 @@ inline app::RunOptions runOn(const std::string& context) {
 }
 
 /// base + every correction in scanline order: neither queues nor splats.
-inline core::ImageRgb rayTraced(const app::Workspace& workspace, const core::FrameSnapshot& frame, std::uint32_t seed = 1) {
+inline core::ImageRgb rayTraced(const app::Workspace& workspace, const core::FrameSnapshot& frame,
+                                std::uint32_t seed = 1) {
   const raytrace::CorrectiveTracer tracer(*workspace.world, {.seed = seed});
   const raytrace::TraceAllResult all = raytrace::traceAll(tracer, frame, 2, {});
   return core::compositeLinear(frame.view.width(), frame.view.height(), frame.baseAndId, all.corrections);

@@ -33,7 +33,8 @@ TEST(Structure, RoomsIncludeOnlyWhatStandsBelowThem) {
       {"attention", {"core", "attention"}},
       {"raytrace", {"core", "raytrace"}},
       {"app", {"core", "render", "attention", "raytrace", "app"}}};
-  const std::set<std::string> rooms = {"core", "render", "attention", "raytrace", "app", "bench", "tests", "data"};
+  const std::set<std::string> rooms = {"core", "render", "attention", "raytrace",
+                                       "app",  "bench",  "tests",     "data"};
   int seen = 0;
   for (const auto& [room, below] : allowed) {
     forEachInclude(room, [&](const std::string& file, const std::string& included) {
@@ -53,7 +54,8 @@ TEST(Structure, OneRoomOneEngine) {
   for (const std::string room : {"core", "render", "attention", "raytrace", "app"}) {
     forEachInclude(room, [&](const std::string& file, const std::string& included) {
       for (const auto& [owner, engine] : engines) {
-        EXPECT_FALSE(owner != room && std::regex_search(included, engine)) << file << " includes " << included;
+        EXPECT_FALSE(owner != room && std::regex_search(included, engine))
+            << file << " includes " << included;
       }
     });
   }
