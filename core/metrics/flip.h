@@ -1,0 +1,24 @@
+// LDR-FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator
+// for Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020.
+// Any thread.
+#pragma once
+
+#include "core/image.h"
+
+namespace saccade::core {
+
+/// A 0.7 m wide display of 3840 pixels seen from 0.7 m, as in the paper.
+inline constexpr double kFlipPixelsPerDegree = 67.0206;
+
+/// Error map in [0, 1] of two sRGB images of equal size; exactly 0 where the neighbourhoods are identical.
+ImageGray flip(const ImageRgba8& reference, const ImageRgba8& test,
+               double pixelsPerDegree = kFlipPixelsPerDegree);
+
+/// 0 for an empty map.
+double meanOf(const ImageGray& map);
+
+/// The value below which `fraction` of the map's total error lies, so that large areas without error do not
+/// hide the errors (as in the tool that the paper's authors publish). `fraction` in [0, 1].
+double weightedPercentile(const ImageGray& map, double fraction);
+
+}  // namespace saccade::core
