@@ -1,0 +1,163 @@
+// The cache of corrective samples: reuse from camera to camera.
+// Haber et al. 2001, "Perceptually Guided Corrective Splatting", section 4.5 and step 5 of section 4.1.
+//
+// Departure from the paper: not nested linked lists by object and level, but one generation per camera age,
+// each a list of pages of 256 samples in structure-of-arrays order, with counts by object and level beside.
+// Aging deletes by object and age, MAX_AGE and the memory bound delete whole ages: all of them the oldest end
+// or one generation, and every pass reads memory in order.
+//
+// How it stays small at rest: nothing is warped while the camera stands, and the next warp drops a sample
+// that lies on the same pixel (same object, visible) as a sample of a younger age whose level is the same or
+// coarser: the younger one knows that point better and covers at least as much. A pixel thus keeps at most
+// one age per level, in practice little more than one sample.
+//
+// Main thread only.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "core/corrective/messages.h"
+#include "render/splat/correction_layer.h"
+
+namespace saccade::render {
+
+struct AgingOptions {
+  int nMin = 10;       ///< N_min: samples a level needs to be the one that is tested
+  float delta = 0.1f;  ///< largest change of <normal, v> of a valid sample, [0, 1]
+  int maxAge = 30;     ///< MAX_AGE in camera changes, >= 0
+};
+
+class SampleCache {
+ public:
+  /// Keeps at most `maxBytes` of samples; less than one page (14 KiB) keeps nothing.
+  explicit SampleCache(std::size_t maxBytes);
+
+  struct AgingResult {
+    std::size_t kept = 0, deleted = 0;
+  };
+  struct WarpResult {
+    std::size_t splatted = 0;   ///< handed to the layer
+    std::size_t offscreen = 0;  ///< behind the camera or outside the image; kept
+    std::size_t hidden = 0;     ///< another object's pixel, or depth disagrees; kept
+    std::size_t dropped = 0;    ///< a younger sample lies on the same pixel; deleted
+  };
+
+  /// The camera's age: 0 until the first call of age().
+  std::uint64_t cameraAge() const { return cameraAge_; }
+
+  /// Stores a batch traced for the camera of age `cameraAge` (<= cameraAge(); late batches are welcome). When
+  /// the memory is used up the oldest samples leave; samples as old as the oldest stored are then refused.
+  /// Samples with a position, normal or correction that is not finite are ignored. Returns how many were
+  /// stored.
+  std::size_t add(const core::SampleBatch& batch, std::uint64_t cameraAge);
+
+  /// Step 2 of the loop: to be called once for every new camera, the first included. Raises the camera age,
+  /// then the paper's pseudo code. Two additions where the paper says nothing: v is normalised (fact 15), and
+  /// all samples of an object none of whose levels has N_min of them are tested together.
+  AgingResult age(const core::View& view, const AgingOptions& options);
+
+  /// Step 5: projects all samples into the frame and splats the visible ones as placeholders. A sample is
+  /// visible if its object has the pixel it falls on and its view depth agrees with the depth buffer there:
+  /// the difference is at most one pixel's footprint at that depth plus the change of depth of the buffer
+  /// across the pixel in x and in y (fact 12). Footprints grow and shrink with the magnification, so that an
+  /// object that comes nearer stays covered.
+  WarpResult warp(const core::FrameSnapshot& frame, CorrectionLayer& layer);
+
+  std::size_t size() const { return size_; }
+  /// Memory of the pages, those kept for reuse included; <= maxBytes.
+  std::size_t bytes() const { return allocatedPages_ * sizeof(Page); }
+  /// Samples of an object's level.
+  std::uint32_t count(std::uint32_t id, int level) const;
+  void clear();
+
+  /// Calls visit(const core::Sample&, std::uint64_t cameraAge) for every sample, oldest age first.
+  template <class Visit>
+  void forEach(Visit&& visit) const {
+    for (const Generation& g : generations_) {
+      for (const auto& page : g.pages) {
+        for (int i = 0; i < page->count; ++i) visit(page->get(i), g.age);
+      }
+    }
+  }
+
+ private:
+  struct Page {
+    static constexpr int kCapacity = 256;
+    float px[kCapacity], py[kCapacity], pz[kCapacity];
+    float nx[kCapacity], ny[kCapacity], nz[kCapacity];
+    float cosView[kCapacity];
+    float viewDepth[kCapacity];
+    std::uint32_t id[kCapacity];
+    core::Vec3 correction[kCapacity];
+    std::uint16_t x[kCapacity], y[kCapacity];
+    std::uint8_t level[kCapacity];  ///< 0 = dead, removed by the next compact()
+    std::uint8_t thread[kCapacity];
+    bool fromDepth[kCapacity];
+    int count = 0;
+
+    core::Vec3 position(int i) const { return {px[i], py[i], pz[i]}; }
+    void set(int i, const core::Sample& s);
+    core::Sample get(int i) const;
+  };
+  using PagePtr = std::unique_ptr<Page>;
+
+  /// All samples of one camera age. All pages but the last are full.
+  struct Generation {
+    std::uint64_t age = 0;
+    float pixelsPerRadian = 0;  ///< of the view it was traced in, at the image's centre
+    std::vector<PagePtr> pages;
+  };
+
+  /// Where a sample falls in a new image.
+  struct Landing {
+    core::Vec2 pixel;
+    float viewDepth;
+    std::int32_t pixelIndex;
+    std::uint8_t slot;
+  };
+  /// A sample that passed the tests of a warp.
+  struct Visible {
+    const Page* page;
+    core::Vec2 pixel;
+    std::int32_t pixelIndex;
+    std::uint16_t ageFrames;
+    std::uint8_t slot;
+    std::uint8_t footprint;
+  };
+
+  Generation& generation(std::uint64_t age);
+  PagePtr takePage(std::uint64_t forAge);
+  void dropFrontPage();
+  void releasePage(PagePtr page);
+  void forget(const Page& page, int slot) { --counts_[page.id[slot]][page.level[slot]], --size_; }
+  void dropGenerations(std::uint64_t olderThan);
+  std::vector<std::uint8_t> testedLevels(int nMin) const;
+  std::size_t invalidate(Generation& g, const core::Vec3& eye, float delta,
+                         const std::vector<std::uint8_t>& tested);
+  void compact(Generation& g);
+  static int projectPage(const Page& page, const core::FrameSnapshot& frame,
+                         std::array<Landing, Page::kCapacity>& landings);
+  void findVisible(Generation& g, const core::FrameSnapshot& frame, WarpResult& result);
+
+  const std::size_t maxPages_;
+  std::size_t allocatedPages_ = 0;
+  std::size_t size_ = 0;
+  std::uint64_t cameraAge_ = 0;
+  float pixelsPerRadian_ = 0;
+  std::deque<Generation> generations_;  ///< oldest first
+  std::vector<PagePtr> freePages_;
+  /// By id and level; [0] unused.
+  std::vector<std::array<std::uint32_t, core::Lattice::kMaxLevel + 1>> counts_;
+
+  // Scratch of age() and warp(), kept to save allocations.
+  std::vector<std::uint32_t> total_, invalid_;
+  std::vector<std::uint8_t> claimed_;  ///< per pixel: coarsest level of a visible sample of a younger age
+  std::array<std::vector<Visible>, core::Lattice::kMaxLevel + 1> visible_;
+};
+
+}  // namespace saccade::render
