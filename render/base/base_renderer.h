@@ -27,7 +27,6 @@ namespace saccade::render {
 struct DrawStats {
   std::size_t objectsDrawn = 0;
   std::size_t objectsCulled = 0;  ///< outside the frustum
-  std::size_t drawCalls = 0;
   std::size_t triangles = 0;
 };
 

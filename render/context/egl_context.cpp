@@ -2,9 +2,10 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include <cstring>
+#include <algorithm>
+#include <iterator>
+#include <sstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -14,10 +15,10 @@ namespace saccade::render {
 
 namespace {
 
-bool hasWord(const char* list, std::string_view word) {
-  if (!list) return false;
-  const std::string padded = " " + std::string(list) + " ";
-  return padded.find(" " + std::string(word) + " ") != std::string::npos;
+bool hasWord(const char* list, const std::string& word) {
+  std::istringstream words(list ? list : "");
+  return std::find(std::istream_iterator<std::string>(words), {}, word) !=
+         std::istream_iterator<std::string>();
 }
 
 template <class Function>

@@ -1,0 +1,255 @@
+#include "render/base/base_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/error.h"
+#include "render/base/features.h"
+#include "render/base/frustum.h"
+#include "render/base/geometry.h"
+#include "render/base/snapshot_pool.h"
+#include "render/base/target.h"
+#include "render/base/textures.h"
+
+namespace saccade::render {
+
+namespace {
+
+struct Program {
+  GlProgram program;
+  GLint viewProjection = -1;
+  GLint surface = -1;
+};
+
+Program makeProgram(const Gl& gl, Features features) {
+  Program p;
+  p.program = GlProgram(gl, buildProgram(gl, "base layer, features " + std::to_string(features),
+                                         vertexShader(features), fragmentShader(features)));
+  const GLuint name = p.program.name();
+  p.viewProjection = gl.GetUniformLocation(name, "viewProjection");
+  p.surface = gl.GetUniformLocation(name, "surface");
+  gl.UseProgram(name);
+  // A sampler that the features leave out has location -1, which GL ignores.
+  const char* samplers[kUnitCount] = {"maps", "baseTexture", "metallicTexture", "transmissionTexture",
+                                      "emissionTexture"};
+  for (int unit = 0; unit < kUnitCount; ++unit)
+    gl.Uniform1i(gl.GetUniformLocation(name, samplers[unit]), unit);
+  return p;
+}
+
+struct Visible {
+  float distanceSquared;  ///< eye to the object's bounds; infinite for bounds around the eye
+  const DrawItem* item;
+};
+
+}  // namespace
+
+struct BaseRenderer::State {
+  State(GlContext& glContext, const core::Scene& drawnScene)
+      : context(glContext),
+        gl(glContext.gl()),
+        scene(drawnScene),
+        geometry(gl, drawnScene),
+        target(gl, glContext.maxSize()),
+        idCount(drawnScene.idCount()) {}
+
+  GlContext& context;
+  const Gl& gl;
+  const core::Scene& scene;
+  Geometry geometry;
+  std::vector<SurfaceConstants> constants;  ///< by object
+  std::vector<GlTexture> textures;          ///< by the scene's index; empty ones are not drawn
+  GlTexture maps;
+  int mapLayers = 0;
+  std::map<Features, Program> programs;
+  Target target;
+  SnapshotPool pool;
+  std::vector<char> visible;  ///< by object
+  std::vector<Visible> order;
+  DrawStats stats;
+  std::uint32_t idCount;
+
+  // What GL has bound now, while drawing.
+  const Program* boundProgram = nullptr;
+  std::uint32_t boundAttributes = 0;
+  std::array<int, kUnitCount> boundTextures{};
+  bool culling = false;
+
+  void uploadTextures();
+  Features shown(Features features) const;
+  const Program& program(Features features);
+  void draw(const core::View& view);
+  void beginDraw(const core::View& view);
+  void useState(const DrawItem& item, const core::View& view);
+  void bindTexture(TextureUnit unit, const core::TextureSlot& slot);
+  void cullBackFaces(bool cull);
+  void sortVisible(const core::View& view);
+};
+
+void BaseRenderer::State::uploadTextures() {
+  textures.resize(scene.textures.size());
+  const auto need = [&](bool used, const core::TextureSlot& slot) {
+    if (!used) return;
+    const auto index = static_cast<std::size_t>(slot.texture);
+    if (textures[index].name() == 0) {
+      textures[index] = uploadTexture(gl, scene.textures[index], context.maxSize());
+    }
+  };
+  for (const DrawItem& item : geometry.items()) {
+    const core::Material& m = scene.materials[scene.objects[item.object].material];
+    need(item.features & kBaseTexture, m.baseColorTexture);
+    need(item.features & kMetallicTexture, m.metallicRoughnessTexture);
+    need(item.features & kTransmissionTexture, m.transmissionTexture);
+    need(item.features & kEmissionTexture, m.emissionTexture);
+  }
+  checkGl(gl, "uploading the textures");
+}
+
+/// What is drawn with the maps at hand.
+Features BaseRenderer::State::shown(Features features) const {
+  if (mapLayers == 0) return withoutMaps(features);
+  return mapLayers == 1 ? withoutBackLayer(features) : features;
+}
+
+const Program& BaseRenderer::State::program(Features features) {
+  const auto found = programs.find(features);
+  if (found != programs.end()) return found->second;
+  return programs.emplace(features, makeProgram(gl, features)).first->second;
+}
+
+void BaseRenderer::State::bindTexture(TextureUnit unit, const core::TextureSlot& slot) {
+  if (boundTextures[unit] == slot.texture) return;
+  boundTextures[unit] = slot.texture;
+  gl.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  gl.BindTexture(GL_TEXTURE_2D, textures[static_cast<std::size_t>(slot.texture)].name());
+}
+
+void BaseRenderer::State::beginDraw(const core::View& view) {
+  target.begin(view.width(), view.height());
+  gl.Disable(GL_BLEND);
+  gl.Disable(GL_SCISSOR_TEST);
+  gl.Disable(GL_CULL_FACE);
+  gl.CullFace(GL_BACK);
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_LESS);
+  gl.DepthMask(GL_TRUE);
+  gl.FrontFace(GL_CW);  // View's clip space points down
+  constexpr float kNothing[4] = {0, 0, 0, 0};
+  constexpr float kFar = 1;
+  gl.ClearBufferfv(GL_COLOR, 0, kNothing);
+  gl.ClearBufferfv(GL_DEPTH, 0, &kFar);
+  gl.ActiveTexture(GL_TEXTURE0 + kMapsUnit);
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, maps.name());
+  boundProgram = nullptr;
+  boundAttributes = 0;
+  culling = false;
+  boundTextures.fill(-1);
+  stats = {};
+}
+
+void BaseRenderer::State::cullBackFaces(bool cull) {
+  if (cull == culling) return;
+  culling = cull;
+  if (cull) {
+    gl.Enable(GL_CULL_FACE);
+  } else {
+    gl.Disable(GL_CULL_FACE);
+  }
+}
+
+void BaseRenderer::State::useState(const DrawItem& item, const core::View& view) {
+  const Features features = shown(item.features);
+  const Program& wanted = program(features);
+  if (&wanted != boundProgram) {
+    boundProgram = &wanted;
+    gl.UseProgram(wanted.program.name());
+    gl.UniformMatrix4fv(wanted.viewProjection, 1, GL_FALSE, &view.viewProjection()[0][0]);
+  }
+  if (item.attributes != boundAttributes) {
+    boundAttributes = item.attributes;
+    gl.BindVertexArray(geometry.vertexArray(item.attributes));
+  }
+  const core::Material& m = scene.materials[scene.objects[item.object].material];
+  if (features & kBaseTexture) bindTexture(kBaseUnit, m.baseColorTexture);
+  if (features & kMetallicTexture) bindTexture(kMetallicUnit, m.metallicRoughnessTexture);
+  if (features & kTransmissionTexture) bindTexture(kTransmissionUnit, m.transmissionTexture);
+  if (features & kEmissionTexture) bindTexture(kEmissionUnit, m.emissionTexture);
+  SurfaceConstants c = constants[item.object];
+  // Without maps the irradiance is pi, which the division by pi takes away.
+  if (features & kLightmap) c.diffuse /= core::kPi;
+  gl.Uniform4fv(wanted.surface, 3, &c.diffuse.x);
+}
+
+/// Near objects first, so that what they hide is not shaded; objects around the camera (rooms) last. Ties
+/// keep the order of `items`. A function of the view alone: so is the image, coplanar surfaces included.
+void BaseRenderer::State::sortVisible(const core::View& view) {
+  findVisible(scene, view, visible);
+  order.clear();
+  const core::Vec3 eye = view.camera().eye;
+  for (const DrawItem& item : geometry.items()) {
+    if (!visible[item.object]) continue;
+    const core::Bounds& bounds = scene.objects[item.object].bounds;
+    const core::Vec3 nearest = glm::clamp(eye, bounds.lo, bounds.hi) - eye;
+    const float squared = glm::dot(nearest, nearest);
+    order.push_back({squared > 0 ? squared : core::kInfinity, &item});
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Visible& a, const Visible& b) { return a.distanceSquared < b.distanceSquared; });
+}
+
+void BaseRenderer::State::draw(const core::View& view) {
+  beginDraw(view);
+  sortVisible(view);
+  // A solid that the near plane cuts shows its inside.
+  const float nearCorner = view.zNear() * glm::length(view.direction({0, 0}));
+  for (const Visible& v : order) {
+    const DrawItem& item = *v.item;
+    useState(item, view);
+    cullBackFaces(item.solid && v.distanceSquared > nearCorner * nearCorner &&
+                  v.distanceSquared < core::kInfinity);
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(item.indexCount), GL_UNSIGNED_INT,
+                    reinterpret_cast<const void*>(std::size_t{item.firstIndex} * sizeof(std::uint32_t)));
+    stats.triangles += item.indexCount / 3;
+  }
+  stats.objectsDrawn = order.size();
+  stats.objectsCulled = geometry.items().size() - order.size();
+  gl.BindVertexArray(0);
+}
+
+BaseRenderer::BaseRenderer(GlContext& context, const core::Scene& scene) {
+  context.makeCurrent();
+  state_ = std::make_unique<State>(context, scene);
+  for (const core::Object& object : scene.objects) state_->constants.push_back(constantsOf(scene, object));
+  state_->uploadTextures();
+}
+
+BaseRenderer::~BaseRenderer() { state_->context.makeCurrent(); }
+
+void BaseRenderer::setMaps(const core::IlluminationMaps* maps) {
+  state_->context.makeCurrent();
+  state_->maps = GlTexture();
+  state_->mapLayers = 0;
+  if (!maps) return;
+  state_->maps = uploadMaps(state_->gl, *maps, state_->context.maxSize());
+  state_->mapLayers = maps->layers;
+  checkGl(state_->gl, "uploading the illumination maps");
+}
+
+std::shared_ptr<core::FrameSnapshot> BaseRenderer::render(const core::View& view, std::uint64_t epoch,
+                                                          int nMin) {
+  state_->context.makeCurrent();
+  std::shared_ptr<core::FrameSnapshot> frame = state_->pool.take();
+  state_->draw(view);
+  state_->target.read(*frame);
+  checkGl(state_->gl, "drawing the base layer");
+  frame->epoch = epoch;
+  frame->view = view;
+  core::measureExtents(*frame, state_->idCount, nMin);
+  return frame;
+}
+
+const DrawStats& BaseRenderer::lastDraw() const { return state_->stats; }
+
+}  // namespace saccade::render

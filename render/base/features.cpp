@@ -1,0 +1,230 @@
+#include "render/base/features.h"
+
+#include <array>
+
+#include "core/scene/specular_albedo.h"
+
+namespace saccade::render {
+
+namespace {
+
+bool isBlack(const core::Vec3& c) { return c == core::Vec3(0); }
+
+void addTexture(Features& features, const core::TextureSlot& slot, Feature texture, Feature secondUv) {
+  if (!slot) return;
+  features |= texture;
+  if (slot.uvSet == 1) features |= secondUv;
+}
+
+/// Radiance per irradiance / pi, before textures.
+core::Vec3 diffuseScale(const core::Scene& scene, const core::Material& m) {
+  if (m.unlit) return m.baseColor;
+  core::Vec3 scale = m.baseColor * core::baseDiffuseFactor(scene, m);
+  if (!m.metallicRoughnessTexture) scale *= 1 - m.metallic;
+  if (!m.transmissionTexture) scale *= 1 - m.transmission;
+  return scale;
+}
+
+struct NamedFeature {
+  Feature feature;
+  const char* macro;
+};
+constexpr std::array kMacros{NamedFeature{kLightmap, "LIGHTMAP"},
+                             NamedFeature{kBackLayer, "BACK_LAYER"},
+                             NamedFeature{kBaseTexture, "BASE_TEXTURE"},
+                             NamedFeature{kVertexColor, "VERTEX_COLOR"},
+                             NamedFeature{kMetallicTexture, "METALLIC_TEXTURE"},
+                             NamedFeature{kTransmissionTexture, "TRANSMISSION_TEXTURE"},
+                             NamedFeature{kEmissionTexture, "EMISSION_TEXTURE"},
+                             NamedFeature{kEmission, "EMISSION"},
+                             NamedFeature{kFrontEmission, "FRONT_EMISSION"},
+                             NamedFeature{kAlphaMask, "ALPHA_MASK"},
+                             NamedFeature{kBlend, "BLEND"}};
+
+std::string header(Features features) {
+  std::string text = "#version 330 core\n";
+  for (const NamedFeature& f : kMacros) {
+    if (features & f.feature) text += std::string("#define ") + f.macro + "\n";
+  }
+  const std::uint32_t attributes = attributesOf(features);
+  if (attributes & (1u << kUv0)) text += "#define UV0\n";
+  if (attributes & (1u << kUv1)) text += "#define UV1\n";
+  const auto uv = [&](const char* macro, Feature second) {
+    text += std::string("#define ") + macro + (features & second ? " uv1\n" : " uv0\n");
+  };
+  uv("BASE_UV", kBaseUv1);
+  uv("METALLIC_UV", kMetallicUv1);
+  uv("TRANSMISSION_UV", kTransmissionUv1);
+  uv("EMISSION_UV", kEmissionUv1);
+  return text;
+}
+
+constexpr const char* kVertexBody = R"(
+layout(location = 0) in vec3 positionIn;
+invariant gl_Position;  // the same depth whatever the features
+uniform mat4 viewProjection;
+#ifdef LIGHTMAP
+layout(location = 1) in vec2 lightmapUvIn;
+out vec2 lightmapUv;
+#endif
+#ifdef UV0
+layout(location = 2) in vec2 uv0In;
+out vec2 uv0;
+#endif
+#ifdef UV1
+layout(location = 3) in vec2 uv1In;
+out vec2 uv1;
+#endif
+#ifdef VERTEX_COLOR
+layout(location = 4) in vec4 colorIn;
+out vec4 color;
+#endif
+void main() {
+  gl_Position = viewProjection * vec4(positionIn, 1.0);
+#ifdef LIGHTMAP
+  lightmapUv = lightmapUvIn;
+#endif
+#ifdef UV0
+  uv0 = uv0In;
+#endif
+#ifdef UV1
+  uv1 = uv1In;
+#endif
+#ifdef VERTEX_COLOR
+  color = colorIn;
+#endif
+}
+)";
+
+constexpr const char* kFragmentBody = R"(
+out vec4 radianceAndId;
+uniform vec4 surface[3];  // SurfaceConstants
+#ifdef LIGHTMAP
+in vec2 lightmapUv;
+uniform sampler2DArray maps;
+#endif
+#ifdef UV0
+in vec2 uv0;
+#endif
+#ifdef UV1
+in vec2 uv1;
+#endif
+#ifdef VERTEX_COLOR
+in vec4 color;
+#endif
+#ifdef BASE_TEXTURE
+uniform sampler2D baseTexture;
+#endif
+#ifdef METALLIC_TEXTURE
+uniform sampler2D metallicTexture;
+#endif
+#ifdef TRANSMISSION_TEXTURE
+uniform sampler2D transmissionTexture;
+#endif
+#ifdef EMISSION_TEXTURE
+uniform sampler2D emissionTexture;
+#endif
+void main() {
+  vec3 radiance = surface[0].rgb;
+  float coverage = surface[1].a;
+#ifdef BASE_TEXTURE
+  vec4 base = texture(baseTexture, BASE_UV);
+  radiance *= base.rgb;
+  coverage *= base.a;
+#endif
+#ifdef VERTEX_COLOR
+  radiance *= color.rgb;
+  coverage *= color.a;
+#endif
+#ifdef ALPHA_MASK
+  if (coverage < surface[2].z) discard;
+#endif
+#ifdef METALLIC_TEXTURE
+  radiance *= 1.0 - surface[2].x * texture(metallicTexture, METALLIC_UV).b;
+#endif
+#ifdef TRANSMISSION_TEXTURE
+  radiance *= 1.0 - surface[2].y * texture(transmissionTexture, TRANSMISSION_UV).r;
+#endif
+#ifdef LIGHTMAP
+#ifdef BACK_LAYER
+  float layer = gl_FrontFacing ? 0.0 : 1.0;
+#else
+  const float layer = 0.0;
+#endif
+  radiance *= texture(maps, vec3(lightmapUv, layer)).rgb;
+#endif
+#ifdef EMISSION
+  vec3 emission = surface[1].rgb;
+#ifdef EMISSION_TEXTURE
+  emission *= texture(emissionTexture, EMISSION_UV).rgb;
+#endif
+#ifdef FRONT_EMISSION
+  if (gl_FrontFacing) radiance += emission;
+#else
+  radiance += emission;
+#endif
+#endif
+#ifdef BLEND
+  radiance *= coverage;
+#endif
+  radianceAndId = vec4(radiance, surface[0].a);
+}
+)";
+
+}  // namespace
+
+Features featuresOf(const core::Scene& scene, const core::Object& object) {
+  const core::Material& m = scene.materials[object.material];
+  Features f = 0;
+  const bool diffuse = !isBlack(diffuseScale(scene, m));
+  if (m.alphaMode == core::AlphaMode::mask) f |= kAlphaMask;
+  if (m.alphaMode == core::AlphaMode::blend) f |= kBlend;
+  if (diffuse || f != 0) {
+    addTexture(f, m.baseColorTexture, kBaseTexture, kBaseUv1);
+    if (!object.mesh.colors.empty()) f |= kVertexColor;
+  }
+  if (diffuse && !m.unlit) {
+    if (!object.mesh.lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
+    if (m.metallic != 0) addTexture(f, m.metallicRoughnessTexture, kMetallicTexture, kMetallicUv1);
+    if (m.transmission != 0) {
+      addTexture(f, m.transmissionTexture, kTransmissionTexture, kTransmissionUv1);
+    }
+  }
+  if (m.emits()) {
+    f |= m.doubleSided ? kEmission : kEmission | kFrontEmission;
+    addTexture(f, m.emissionTexture, kEmissionTexture, kEmissionUv1);
+  }
+  return f;
+}
+
+SurfaceConstants constantsOf(const core::Scene& scene, const core::Object& object) {
+  const core::Material& m = scene.materials[object.material];
+  SurfaceConstants c;
+  c.diffuse = diffuseScale(scene, m);
+  c.id = static_cast<float>(object.id);
+  c.emission = m.emission;
+  c.coverage = m.alpha;
+  c.metallic = m.metallic;
+  c.transmission = m.transmission;
+  c.cutoff = m.alphaCutoff;
+  return c;
+}
+
+std::uint32_t attributesOf(Features features) {
+  std::uint32_t attributes = 1u << kPosition;
+  if (features & kLightmap) attributes |= 1u << kLightmapUv;
+  if (features & kVertexColor) attributes |= 1u << kColor;
+  const auto uv = [&](Feature texture, Feature second) {
+    if (features & texture) attributes |= features & second ? 1u << kUv1 : 1u << kUv0;
+  };
+  uv(kBaseTexture, kBaseUv1);
+  uv(kMetallicTexture, kMetallicUv1);
+  uv(kTransmissionTexture, kTransmissionUv1);
+  uv(kEmissionTexture, kEmissionUv1);
+  return attributes;
+}
+
+std::string vertexShader(Features features) { return header(features) + kVertexBody; }
+std::string fragmentShader(Features features) { return header(features) + kFragmentBody; }
+
+}  // namespace saccade::render
