@@ -59,7 +59,7 @@ AlbedoPair integrate(float cosView, float roughness) {
       const float cosLight = 2 * cosHalf * normal.z - view.z;
       if (cosHalf <= 0 || cosLight <= 0) continue;
       const float w = weight(cosView, cosLight, alpha * alpha);
-      const float fresnel = static_cast<float>(std::pow(1.0f - cosHalf, 5));
+      const float away = 1 - cosHalf, fresnel = away * away * (away * away) * away;
       scale += static_cast<double>(w * (1 - fresnel));
       bias += static_cast<double>(w * fresnel);
     }

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+#include "core/scene/clusters.h"
+#include "core/scene/defaults.h"
+#include "core/scene/hierarchy.h"
+#include "core/scene/load.h"
+#include "core/scene/mesh_repair.h"
+#include "core/scene/plan.h"
+
+namespace saccade::core {
+namespace {
+
+const Material& materialOf(const Scene& scene, const Object& object) {
+  return scene.materials[static_cast<std::size_t>(object.material)];
+}
+
+void repairAll(Scene& scene) {
+  RepairCounts counts;
+  for (Object& o : scene.objects) {
+    const Material& m = materialOf(scene, o);
+    repairMesh(o.mesh, static_cast<bool>(m.normalTexture), m.normalTexture.uvSet, counts);
+  }
+  std::erase_if(scene.objects, [](const Object& o) { return o.mesh.indices.empty(); });
+  const auto warn = [&](std::uint64_t n, const char* what) {
+    if (n > 0) scene.warnings.push_back(std::to_string(n) + what);
+  };
+  warn(counts.triangles,
+       " triangles were dropped (no area, a vertex that is not finite, or an index out of range)");
+  warn(counts.attributes, " vertex arrays of the wrong length were dropped");
+  warn(counts.normals, " normals were of no use and were computed anew");
+}
+
+bool nodeHasSeveral(const std::vector<Object>& objects, std::size_t at) {
+  const auto sameNode = [&](std::size_t i) { return objects[i].node == objects[at].node; };
+  return (at > 0 && sameNode(at - 1)) || (at + 1 < objects.size() && sameNode(at + 1));
+}
+
+/// Objects in order of (node, primitive), each replaced by its clusters.
+void splitIntoClusters(Scene& scene) {
+  std::stable_sort(scene.objects.begin(), scene.objects.end(), [](const Object& a, const Object& b) {
+    return std::tie(a.node, a.primitive) < std::tie(b.node, b.primitive);
+  });
+  std::vector<Object> out;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    Object& whole = scene.objects[i];
+    if (nodeHasSeveral(scene.objects, i)) whole.name += "/" + std::to_string(whole.primitive);
+    const std::vector<Cluster> clusters = clusterMesh(whole.mesh, materialOf(scene, whole).transmission > 0);
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
+      Object part;
+      part.name = clusters.size() > 1 ? whole.name + "#" + std::to_string(c) : whole.name;
+      part.node = whole.node;
+      part.primitive = whole.primitive;
+      part.cluster = static_cast<int>(c);
+      part.material = whole.material;
+      part.closed = clusters[c].closed;
+      part.mesh = clusters.size() > 1 ? subMesh(whole.mesh, clusters[c].triangles) : std::move(whole.mesh);
+      out.push_back(std::move(part));
+    }
+  }
+  scene.objects = std::move(out);
+}
+
+void findBounds(Scene& scene) {
+  scene.bounds = Bounds{};
+  for (Object& o : scene.objects) {
+    o.bounds = Bounds{};
+    for (const std::uint32_t i : o.mesh.indices) o.bounds.add(o.mesh.positions[i]);
+    scene.bounds.add(o.bounds);
+  }
+}
+
+void assignIds(Scene& scene, float threshold) {
+  std::vector<float> albedo;
+  for (const Material& m : scene.materials) albedo.push_back(nonDiffuseAlbedo(scene, m));
+  std::uint32_t next = 1;
+  for (Object& o : scene.objects) {
+    o.nonDiffuseAlbedo = albedo[static_cast<std::size_t>(o.material)];
+    o.id = o.nonDiffuseAlbedo > threshold ? next++ : 0;
+  }
+}
+
+bool needsDefaultLight(const Scene& scene) {
+  if (!scene.lights.empty() || scene.objects.empty()) return false;
+  bool allUnlit = true;
+  for (const Object& o : scene.objects) {
+    const Material& m = materialOf(scene, o);
+    if (m.emits()) return false;
+    allUnlit = allUnlit && m.unlit;
+  }
+  return !allUnlit;
+}
+
+void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool light) {
+  if (camera) {
+    scene.cameras.push_back(defaultCamera(scene, around));
+    scene.defaultCamera = true;
+    scene.warnings.emplace_back("the scene has no camera: the default camera frames it");
+  }
+  if (light) {
+    addDefaultLight(scene, around);
+    scene.defaultLight = true;
+    scene.warnings.emplace_back("the scene has no light: a default light panel was added");
+  }
+}
+
+void checkMaterials(const Scene& scene) {
+  for (const Object& o : scene.objects)
+    if (o.material < 0 || static_cast<std::size_t>(o.material) >= scene.materials.size())
+      throw Error(scene.path + ": object '" + o.name + "' names a material that is not there");
+}
+
+}  // namespace
+
+void completeScene(Scene& scene, const LoadOptions& options) {
+  checkMaterials(scene);
+  scene.timeSeconds = options.timeSeconds;
+  for (const std::string& light : options.lights) addLight(scene, light);
+  repairAll(scene);
+  if (scene.objects.empty()) throw Error(scene.path + ": holds no triangle to show");
+  findBounds(scene);
+  const bool noCamera = scene.cameras.empty(), noLight = needsDefaultLight(scene);
+  // Looked at once, before a default light changes the bounds.
+  if (noCamera || noLight) addDefaults(scene, look(scene), noCamera, noLight);
+  splitIntoClusters(scene);
+  findBounds(scene);
+  assignIds(scene, options.nonDiffuseThreshold);
+  scene.hierarchy = buildHierarchy(scene.objects);
+}
+
+}  // namespace saccade::core

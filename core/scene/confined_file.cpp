@@ -1,0 +1,49 @@
+#include "core/scene/confined_file.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/error.h"
+
+namespace saccade::core {
+namespace fs = std::filesystem;
+
+fs::path confinedFile(const fs::path& folder, const std::string& relative, const std::string& who) {
+  const std::string quoted = std::string("'").append(relative).append("'");
+  const auto refuse = [&](const std::string& why) { throw Error(who + ": " + quoted + " " + why); };
+  if (relative.empty() || relative.find('\0') != std::string::npos) refuse("is no file name");
+  const fs::path named = fs::path(relative);
+  if (named.is_absolute() || relative.front() == '\\')
+    refuse("is absolute; only files beside the scene are read");
+  if (std::any_of(named.begin(), named.end(), [](const fs::path& part) { return part == ".."; }))
+    refuse("leaves the scene's folder");
+
+  std::error_code failed;
+  const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, failed);
+  if (failed) refuse("cannot be looked up: " + failed.message());
+  const fs::path real = fs::canonical(root / named, failed);
+  if (failed) refuse("does not exist beside the scene");
+  const auto [rootEnd, ignored] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
+  if (rootEnd != root.end()) refuse("leaves the scene's folder through a link");
+  if (!fs::is_regular_file(real, failed)) refuse("is not a regular file");
+  return real;
+}
+
+std::vector<std::uint8_t> readWholeFile(const fs::path& file, std::uint64_t maxBytes) {
+  const std::string name = file.string();
+  std::error_code failed;
+  if (!fs::exists(file, failed)) throw Error(name + ": no such file");
+  if (!fs::is_regular_file(file, failed)) throw Error(name + ": not a regular file");
+  const std::uintmax_t size = fs::file_size(file, failed);
+  if (failed) throw Error(name + ": " + failed.message());
+  if (size > maxBytes)
+    throw Error(name + ": " + std::to_string(size) + " bytes, more than the " + std::to_string(maxBytes) +
+                " this program reads");
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!in && size > 0) throw Error(name + ": cannot be read");
+  return bytes;
+}
+
+}  // namespace saccade::core

@@ -1,0 +1,20 @@
+// Files that a scene file names: only regular files inside the scene's own folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace saccade::core {
+
+/// The path of `relative` (as written in a scene file, already decoded) under `folder`. Throws core::Error,
+/// starting with `who`, for absolute paths, "..", names that leave the folder through a link, and anything
+/// that is not a regular file.
+std::filesystem::path confinedFile(const std::filesystem::path& folder, const std::string& relative,
+                                   const std::string& who);
+
+/// The whole of a regular file of at most `maxBytes`. Throws core::Error.
+std::vector<std::uint8_t> readWholeFile(const std::filesystem::path& file, std::uint64_t maxBytes);
+
+}  // namespace saccade::core

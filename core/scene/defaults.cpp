@@ -1,0 +1,197 @@
+#include "core/scene/defaults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace saccade::core {
+namespace {
+
+constexpr float kPanelSide = 1, kPanelHeight = 0.95f, kPanelRadiance = 15;
+constexpr float kFov = 60;
+constexpr float kEyeHeight = 1.6f;
+/// Rays to each face of the bounds: a grid of this many points a side; a face is open when more than half
+/// miss.
+constexpr int kFaceGrid = 3;
+
+struct Hit {
+  float distance;
+  bool front;
+};
+
+/// Every triangle is tried: a few dozen rays once per scene do not pay for a tree.
+std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& direction) {
+  std::optional<Hit> nearest;
+  for (const Object& o : scene.objects) {
+    const auto& p = o.mesh.positions;
+    const auto& index = o.mesh.indices;
+    for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
+      const Vec3 a = p[index[i]], e1 = p[index[i + 1]] - a, e2 = p[index[i + 2]] - a;
+      const Vec3 across = glm::cross(direction, e2);
+      const float determinant = glm::dot(e1, across);
+      if (determinant == 0) continue;
+      const Vec3 s = from - a;
+      const float u = glm::dot(s, across) / determinant;
+      if (!(u >= 0 && u <= 1)) continue;
+      const Vec3 q = glm::cross(s, e1);
+      const float v = glm::dot(direction, q) / determinant;
+      if (!(v >= 0 && u + v <= 1)) continue;
+      const float t = glm::dot(e2, q) / determinant;
+      if (t > 0 && (!nearest || t < nearest->distance)) nearest = Hit{t, determinant > 0};
+    }
+  }
+  return nearest;
+}
+
+struct FaceView {
+  int hits = 0, fronts = 0;
+};
+
+/// Rays from the middle to a grid of points on one face of the bounds.
+FaceView lookAtFace(const Scene& scene, int axis, bool positive) {
+  FaceView seen;
+  const Bounds& box = scene.bounds;
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  for (int i = 0; i < kFaceGrid; ++i) {
+    for (int j = 0; j < kFaceGrid; ++j) {
+      Vec3 target;
+      target[axis] = positive ? box.hi[axis] : box.lo[axis];
+      // Off the symmetry planes, where edges like to lie.
+      target[u] = glm::mix(box.lo[u], box.hi[u], 0.21f + 0.29f * static_cast<float>(i));
+      target[v] = glm::mix(box.lo[v], box.hi[v], 0.22f + 0.285f * static_cast<float>(j));
+      const auto hit = nearestHit(scene, box.center(), target - box.center());
+      seen.hits += hit.has_value();
+      seen.fronts += hit && hit->front;
+    }
+  }
+  return seen;
+}
+
+Camera outside(const Bounds& box, const Vec3& towardsEye) {
+  Camera camera;
+  camera.name = "default camera";
+  camera.fovYDegrees = kFov;
+  camera.at = box.center();
+  const float radius = std::max(0.5f * box.diagonal(), 1e-3f);
+  camera.eye = camera.at + glm::normalize(towardsEye) * (radius / std::sin(glm::radians(0.5f * kFov)));
+  return camera;
+}
+
+Camera beforeOpening(const Bounds& box, int axis, float side) {
+  Camera camera = outside(box, Vec3(0, 0, 1));
+  const Vec3 extent = box.extent();
+  const float half = 0.5f * std::max(extent.y, extent[axis == 0 ? 2 : 0]);
+  camera.eye = box.center();
+  camera.eye[axis] += side * (0.5f * extent[axis] + 1.1f * half / std::tan(glm::radians(0.5f * kFov)));
+  return camera;
+}
+
+/// Mean free way of a small fan of rays, each no longer than the room.
+float freeWay(const Scene& scene, const Vec3& eye, const Vec3& forward, float longest) {
+  const Vec3 right = glm::normalize(glm::cross(forward, Vec3(0, 1, 0)));
+  float sum = 0;
+  for (int i = -2; i <= 2; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const Vec3 d = glm::normalize(forward + 0.23f * static_cast<float>(i) * right +
+                                    0.21f * static_cast<float>(j) * Vec3(0, 1, 0));
+      const auto hit = nearestHit(scene, eye, d);
+      sum += hit ? std::min(hit->distance, longest) : 0;
+    }
+  }
+  return sum;
+}
+
+Camera insideRoom(const Scene& scene) {
+  const Bounds& box = scene.bounds;
+  const Vec3 extent = box.extent();
+  const float height = std::min(kEyeHeight, 0.6f * extent.y);
+  Camera best;
+  float farthest = -1;
+  for (const int axis : {0, 2}) {
+    for (const float side : {-1.0f, 1.0f}) {
+      for (const float aside : {0.0f, -0.25f, 0.25f}) {
+        Camera c;
+        c.name = "default camera";
+        c.fovYDegrees = kFov;
+        c.eye = box.center();
+        c.eye.y = box.lo.y + height;
+        c.eye[axis] += side * 0.4f * extent[axis];
+        c.eye[2 - axis] += aside * extent[2 - axis];
+        c.at = box.center();
+        c.at.y = box.lo.y + 0.9f * height;
+        const float way = freeWay(scene, c.eye, glm::normalize(c.at - c.eye), box.diagonal());
+        if (way > farthest) farthest = way, best = c;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Surroundings look(const Scene& scene) {
+  Surroundings out;
+  constexpr int kMost = kFaceGrid * kFaceGrid / 2 + 1;
+  const FaceView floor = lookAtFace(scene, 1, false);
+  int closedSides = 0, hits = floor.hits, fronts = floor.fronts;
+  for (int side = 0; side < 4; ++side) {
+    const FaceView face = lookAtFace(scene, side < 2 ? 0 : 2, side % 2 == 0);
+    out.open[side] = face.hits < kMost;
+    closedSides += !out.open[side];
+    hits += face.hits;
+    fronts += face.fronts;
+  }
+  // A solid thing surrounds its middle too, but shows its backs there.
+  out.interior = floor.hits >= kMost && closedSides >= 3 && 2 * fronts >= hits;
+  return out;
+}
+
+void addPanel(Scene& scene, const std::string& name, const Vec3& center, Vec2 size, const Vec3& direction,
+              const Vec3& radiance) {
+  Material material;
+  material.name = name;
+  material.baseColor = Vec3(0);
+  material.metallic = 0;
+  material.specular = 0;
+  material.emission = radiance;
+  scene.materials.push_back(material);
+
+  Node node;
+  node.name = name;
+  scene.nodes.push_back(node);
+
+  const Vec3 n = glm::normalize(direction);
+  const Vec3 u = glm::normalize(glm::cross(std::abs(n.y) > 0.9f ? Vec3(0, 0, 1) : Vec3(0, 1, 0), n));
+  const Vec3 v = glm::cross(n, u);
+  Object object;
+  object.name = name;
+  object.node = static_cast<int>(scene.nodes.size()) - 1;
+  object.material = static_cast<int>(scene.materials.size()) - 1;
+  for (const Vec2 corner : {Vec2(-0.5f, -0.5f), Vec2(0.5f, -0.5f), Vec2(0.5f, 0.5f), Vec2(-0.5f, 0.5f)})
+    object.mesh.positions.push_back(center + corner.x * size.x * u + corner.y * size.y * v);
+  object.mesh.normals.assign(4, n);
+  object.mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.objects.push_back(std::move(object));
+}
+
+void addDefaultLight(Scene& scene, const Surroundings& around) {
+  const Bounds& box = scene.bounds;
+  Vec3 center = box.center();
+  float side = kPanelSide;
+  if (around.interior) {
+    center.y = glm::mix(box.lo.y, box.hi.y, kPanelHeight);
+  } else {
+    center.y = box.hi.y + 0.75f * box.diagonal();
+    side = std::max(kPanelSide, 0.5f * box.diagonal());
+  }
+  addPanel(scene, "default light", center, Vec2(side), Vec3(0, -1, 0), Vec3(kPanelRadiance));
+}
+
+Camera defaultCamera(const Scene& scene, const Surroundings& around) {
+  if (!around.interior) return outside(scene.bounds, Vec3(0.6f, 0.45f, 1));
+  for (int side = 0; side < 4; ++side)
+    if (around.open[side]) return beforeOpening(scene.bounds, side < 2 ? 0 : 2, side % 2 == 0 ? 1.0f : -1.0f);
+  return insideRoom(scene);
+}
+
+}  // namespace saccade::core

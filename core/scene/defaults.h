@@ -1,0 +1,28 @@
+// The light and the camera of a scene that brings none (design, Conventions).
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace saccade::core {
+
+/// What surrounds the middle of a scene, found with rays from there.
+struct Surroundings {
+  bool open[4] = {true, true, true, true};  ///< the sides +x, -x, +z, -z let most rays through
+  bool interior = false;                    ///< a floor and at least three sides, seen from their front
+};
+/// The scene's bounds must be known and not empty, here and below.
+Surroundings look(const Scene& scene);
+
+/// Adds an object emitting downwards, one metre square at 0.95 of the room's height, radiance 15. Departure:
+/// a scene that is no room gets it above its bounds, as wide as the scene if that is more than two metres.
+void addDefaultLight(Scene& scene, const Surroundings& around);
+
+/// 60 degrees. In a closed room: at eye height near one end, looking along the longest free way. In a room
+/// with one open side: outside it. Else three-quarter view from outside.
+Camera defaultCamera(const Scene& scene, const Surroundings& around);
+
+/// A rectangle facing `direction` as a new node, object and emitting material.
+void addPanel(Scene& scene, const std::string& name, const Vec3& center, Vec2 size, const Vec3& direction,
+              const Vec3& radiance);
+
+}  // namespace saccade::core

@@ -1,0 +1,15 @@
+// glTF materials and the textures they use.
+#pragma once
+
+#include "core/scene/gltf_gate.h"
+#include "core/scene/scene.h"
+#include "core/scene/tinygltf.h"
+
+namespace saccade::core {
+
+/// Fills scene.materials (index for index, then glTF's default material if a primitive has none) and
+/// scene.textures (only those that are used; one per texture and colour space). Factors out of range are
+/// clamped and counted. Throws core::Error for an image that cannot be decoded.
+void convertMaterials(const tinygltf::Model& model, const std::vector<EncodedImage>& images, Scene& scene);
+
+}  // namespace saccade::core

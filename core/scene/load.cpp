@@ -1,0 +1,51 @@
+#include "core/scene/load.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/scene/loaders.h"
+
+namespace saccade::core {
+namespace {
+
+enum class Format { gltf, obj, unknown };
+
+/// By content where it is plain (GLB magic, a JSON object), else by extension.
+Format formatOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(64, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  const std::size_t text = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (head.starts_with("glTF") || (text != std::string::npos && head[text] == '{')) return Format::gltf;
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (extension == ".gltf" || extension == ".glb") return Format::gltf;
+  return extension == ".obj" ? Format::obj : Format::unknown;
+}
+
+}  // namespace
+
+Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed)) throw Error(file.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(file, failed)) throw Error(file.string() + ": not a regular file");
+  if (!(options.unitScale > 0 && options.unitScale < kInfinity))
+    throw UsageError("--unit-scale must be a positive number");
+  Scene scene;
+  switch (formatOf(file)) {
+    case Format::gltf:
+      scene = loadGltf(file, options);
+      break;
+    case Format::obj:
+      scene = loadObj(file, options);
+      break;
+    case Format::unknown:
+      throw Error(file.string() + ": not a scene this program reads (.gltf, .glb, .obj)");
+  }
+  completeScene(scene, options);
+  return scene;
+}
+
+}  // namespace saccade::core

@@ -1,0 +1,26 @@
+// What a mesh needs before anything can rely on it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/scene/scene.h"
+
+namespace saccade::core {
+
+struct RepairCounts {
+  std::uint64_t triangles = 0;   ///< dropped: index out of range, vertex not finite, no area
+  std::uint64_t attributes = 0;  ///< arrays of the wrong length, dropped
+  std::uint64_t normals = 0;     ///< vertices whose normal was not usable
+};
+
+/// Drops what is unusable, fills normals (flat ones where there are none, which splits vertices) and, for
+/// `needsTangents`, tangents. Leaves the mesh within the contract of core::Mesh.
+void repairMesh(Mesh& mesh, bool needsTangents, int normalMapUvSet, RepairCounts& counts);
+
+/// For every position the smallest index of a vertex with the same position (bit for bit, -0 = 0).
+std::vector<std::uint32_t> weldedVertices(const std::vector<Vec3>& positions);
+
+/// New mesh of the given triangles (indices into mesh.indices / 3); vertices in order of first use.
+Mesh subMesh(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
+
+}  // namespace saccade::core

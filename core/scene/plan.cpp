@@ -1,0 +1,164 @@
+#include "core/scene/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/scene/texture_mean.h"
+
+namespace saccade::core {
+namespace {
+
+// Longest specular chains. Opaque: a mirror in a mirror in a mirror, and its last view. Refraction: a solid
+// takes two interfaces and their inner reflections; each further transmitting object two more, up to the
+// largest.
+constexpr int kDepthOpaque = 4, kDepthRefraction = 8, kDepthPerObject = 2, kDepthLargest = 12;
+/// Perceptual roughness below which a lobe is followed as a mirror.
+constexpr float kMirrorRoughness = 0.03f;
+
+// Lightmap: texels a 512th of the scene's diagonal wide, charts fill about this part of the atlas.
+constexpr double kTexelsPerDiagonal = 512, kAtlasFill = 0.65;
+constexpr int kSmallestMap = 128, kLargestMap = 2048, kMapStep = 64;
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
+}
+
+std::string counted(std::size_t n, const char* thing) {
+  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+}
+
+double areaOf(const Mesh& mesh) {
+  double twice = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Vec3 a = mesh.positions[mesh.indices[i]];
+    twice += static_cast<double>(glm::length(
+        glm::cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a)));
+  }
+  return 0.5 * twice;
+}
+
+/// What the objects of a scene amount to.
+struct Census {
+  std::size_t nonDiffuse = 0, rough = 0, transmitting = 0, alpha = 0, normalMapped = 0, doubleSided = 0,
+              emitting = 0;
+  double area = 0, leftOut = 0, diffuseArea = 0;
+};
+
+Census count(const Scene& scene) {
+  Census c;
+  std::vector<MaterialMeans> means;
+  for (const Material& m : scene.materials) means.push_back(materialMeans(scene, m));
+  for (const Object& o : scene.objects) {
+    const Material& m = scene.materials[static_cast<std::size_t>(o.material)];
+    const MaterialMeans& mean = means[static_cast<std::size_t>(o.material)];
+    const double area = areaOf(o.mesh);
+    c.area += area;
+    c.alpha += m.alphaMode != AlphaMode::opaque;
+    c.emitting += m.emits();
+    c.normalMapped += static_cast<bool>(m.normalTexture);
+    c.doubleSided += m.doubleSided && !m.unlit && mean.metallic < 1 && mean.transmission < 1;
+    if (o.id == 0) {
+      c.diffuseArea += area;
+      c.leftOut += area * static_cast<double>(o.nonDiffuseAlbedo);
+      continue;
+    }
+    ++c.nonDiffuse;
+    const bool hasLobe = mean.metallic > 0 || luminance(mean.dielectricAlbedo) > 0;
+    c.rough += hasLobe && mean.roughness > kMirrorRoughness;
+    c.transmitting += mean.transmission > 0;
+  }
+  return c;
+}
+
+void sizeLightmap(const Scene& scene, const Census& c, Plan& plan) {
+  if (!(c.area > 0)) return;
+  const double wanted = static_cast<double>(scene.bounds.diagonal()) / kTexelsPerDiagonal;
+  const double side = std::sqrt(c.area / kAtlasFill) / wanted;
+  const double stepped = std::ceil(std::clamp(side, 1.0, 1e6) / kMapStep) * kMapStep;
+  plan.lightmapSize = std::clamp(static_cast<int>(stepped), kSmallestMap, kLargestMap);
+  plan.texelSizeMetres = static_cast<float>(std::sqrt(c.area / kAtlasFill) / plan.lightmapSize);
+}
+
+void describe(const Scene& scene, const Census& c, Plan& plan) {
+  const auto line = [&](const char* stage, bool on, const std::string& yes, const std::string& no) {
+    plan.lines.push_back({stage, on, on ? yes : no});
+  };
+  const std::string nobody = "every object is treated as diffuse";
+  line("corrections", plan.corrections,
+       counted(c.nonDiffuse, "object") + " reflect or transmit beyond Lambert", nobody);
+  line("glossy reflection", plan.glossy, counted(c.rough, "non-diffuse object") + " with a rough lobe",
+       "no rough lobe on a non-diffuse object");
+  line("refraction", plan.refraction, counted(c.transmitting, "object") + " transmit light",
+       "nothing transmits light");
+  line("alpha test", plan.alphaTest, counted(c.alpha, "object") + " with alpha mask or blend",
+       "no alpha mask or blend");
+  line("normal maps", plan.normalMaps, counted(c.normalMapped, "object") + " with a normal map",
+       "no material has a normal map");
+  line("back-side maps", plan.doubleSided,
+       counted(c.doubleSided, "double-sided object") + " take light from behind",
+       "no double-sided surface takes light");
+  line("recursion", plan.recursionDepth > 0,
+       "depth " + std::to_string(plan.recursionDepth) +
+           (plan.refraction ? ": solids refract on entry and exit" : ": mirrors seen in mirrors"),
+       "depth 0: no specular chain to follow");
+  line("object ids", plan.corrections,
+       counted(c.nonDiffuse, "id") +
+           (c.nonDiffuse > 255 ? ", paged through an 8-bit stencil" : ", fit the 8-bit stencil"),
+       "no object needs an id");
+  const std::string size = std::to_string(plan.lightmapSize);
+  line("illumination maps", plan.lightmapSize > 0,
+       size + "x" + size + (plan.doubleSided ? " in 2 layers" : "") + ", texels of " +
+           number(static_cast<double>(plan.texelSizeMetres)) + " m for " + number(c.area) + " m2 of surface",
+       "no surface");
+  const std::size_t lights = scene.lights.size() + c.emitting;
+  line("light sampling", scene.lights.size() > 1 || c.emitting > 0,
+       counted(scene.lights.size(), "punctual light") + ", " + counted(c.emitting, "emitting mesh object"),
+       lights == 1 ? "one punctual light: nothing to choose" : "no light shines");
+  line("default light", scene.defaultLight, "the scene has none", "the scene lights itself");
+  line("default camera", scene.defaultCamera, "the scene has none",
+       "the scene brings " + counted(scene.cameras.size(), "camera"));
+  line(
+      "energy left out", plan.diffuseEnergyLeftOut > 0,
+      number(100 * plan.diffuseEnergyLeftOut) + " % mean albedo of other lobes on objects treated as diffuse",
+      "objects treated as diffuse have no other lobe");
+  for (const char* stage : {"medium", "volume", "motion"}) line(stage, false, "", "not in this scene");
+}
+
+}  // namespace
+
+float nonDiffuseAlbedo(const Scene& scene, const Material& material) {
+  const MaterialMeans m = materialMeans(scene, material);
+  const float coverage = material.alphaMode == AlphaMode::blend ? std::clamp(m.alpha, 0.0f, 1.0f) : 1.0f;
+  float lobes = 0;
+  if (!material.unlit) {
+    const float dielectric = luminance(m.dielectricAlbedo);
+    const float through = (1 - dielectric) * m.transmission * luminance(m.baseColor);
+    lobes = m.metallic * luminance(m.metallicAlbedo) + (1 - m.metallic) * (dielectric + through);
+  }
+  return std::clamp(coverage * lobes + (1 - coverage), 0.0f, 1.0f);
+}
+
+Plan makePlan(const Scene& scene) {
+  const Census c = count(scene);
+  Plan plan;
+  plan.corrections = c.nonDiffuse > 0;
+  plan.glossy = c.rough > 0;
+  plan.refraction = c.transmitting > 0;
+  plan.alphaTest = c.alpha > 0;
+  plan.normalMaps = c.normalMapped > 0;
+  plan.doubleSided = c.doubleSided > 0;
+  if (plan.corrections) plan.recursionDepth = kDepthOpaque;
+  if (plan.refraction)
+    plan.recursionDepth = std::min(
+        kDepthLargest,
+        kDepthRefraction + kDepthPerObject * static_cast<int>(std::min<std::size_t>(c.transmitting - 1, 2)));
+  if (c.diffuseArea > 0) plan.diffuseEnergyLeftOut = c.leftOut / c.diffuseArea;
+  sizeLightmap(scene, c, plan);
+  describe(scene, c, plan);
+  return plan;
+}
+
+}  // namespace saccade::core
