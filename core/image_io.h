@@ -16,7 +16,8 @@ namespace saccade::core {
 inline constexpr std::int64_t kMaxImagePixels = 16384LL * 16384LL;
 
 /// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB; CMYK is refused) from memory; the
-/// format is recognised by content. `name` is for messages. Throws core::Error.
+/// format is recognised by content; gamma and profile chunks are ignored. `name` is for messages. Throws
+/// core::Error, also for a truncated file and for dimensions that its bytes cannot hold. Any thread.
 ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 readImage8(const std::filesystem::path& file);
 
@@ -35,6 +36,7 @@ void writeExrChannels(const std::filesystem::path& file,
 /// The display transform: x 2^exposureEv, clamp to [0, 1] (NaN and negative give 0, +inf 1), sRGB.
 float encodeSrgb(float linear);
 float decodeSrgb(float encoded);
+/// 8-bit codes are round(255 * encodeSrgb(x)), exactly (core/srgb8.h).
 ImageRgba8 toDisplay(const ImageRgb& linear, float exposureEv);
 
 }  // namespace saccade::core
