@@ -12,7 +12,7 @@
 namespace saccade::raytrace {
 
 struct DirectOptions {
-  int samples = 16;    ///< per texel and side, a power of two (the points are a (0, 2)-sequence)
+  int samples = 16;    ///< per texel and side
   int refinement = 4;  ///< times as many samples where the first ones disagree (penumbrae, shadow edges)
   float relativeError = 0.02f;  ///< standard error of the mean above which a texel is refined
   std::uint32_t seed = 1;
