@@ -17,7 +17,7 @@ inline constexpr std::int64_t kMaxImagePixels = 16384LL * 16384LL;
 
 /// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB; CMYK is refused) from memory; the
 /// format is recognised by content; gamma and profile chunks are ignored. `name` is for messages. Throws
-/// core::Error, also for a truncated file and for dimensions that its bytes cannot hold. Any thread.
+/// core::Error, also for a truncated file and for a PNG whose bytes cannot hold its dimensions. Any thread.
 ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 readImage8(const std::filesystem::path& file);
 
