@@ -1,0 +1,31 @@
+// The bundled scenes and the walks through them.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/camera.h"
+#include "data/make_scenes/glb_writer.h"
+
+namespace saccade::data {
+
+GlbWriter makeCornell();
+GlbWriter makeTable();
+GlbWriter makeGallery();
+/// The gallery's hall with a cabinet of `objects` small non-diffuse things, each visible from the camera.
+GlbWriter makeCabinet(int objects);
+
+/// A camera on its way; `seconds` rise from key to key.
+struct PathKey {
+  double seconds = 0;
+  core::Camera camera;
+};
+using CameraPath = std::vector<PathKey>;
+
+CameraPath cornellPath();
+CameraPath tablePath();
+CameraPath galleryPath();
+/// JSON: [{"t", "eye", "at", "up", "fov"}, ...], seconds, metres, degrees.
+void writePath(const std::filesystem::path& file, const CameraPath& path);
+
+}  // namespace saccade::data
