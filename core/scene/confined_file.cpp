@@ -1,8 +1,8 @@
 #include "core/scene/confined_file.h"
 
 #include <algorithm>
-#include <fstream>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 
 namespace saccade::core {
@@ -29,21 +29,13 @@ fs::path confinedFile(const fs::path& folder, const std::string& relative, const
   return real;
 }
 
-std::vector<std::uint8_t> readWholeFile(const fs::path& file, std::uint64_t maxBytes) {
-  const std::string name = file.string();
+std::vector<std::uint8_t> readSceneFile(const fs::path& file) {
   std::error_code failed;
-  if (!fs::exists(file, failed)) throw Error(name + ": no such file");
-  if (!fs::is_regular_file(file, failed)) throw Error(name + ": not a regular file");
-  const std::uintmax_t size = fs::file_size(file, failed);
-  if (failed) throw Error(name + ": " + failed.message());
-  if (size > maxBytes)
-    throw Error(name + ": " + std::to_string(size) + " bytes, more than the " + std::to_string(maxBytes) +
-                " this program reads");
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-  std::ifstream in(file, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!in && size > 0) throw Error(name + ": cannot be read");
-  return bytes;
+  const std::uintmax_t size = fs::is_regular_file(file, failed) ? fs::file_size(file, failed) : 0;
+  if (!failed && size > kMaxSceneBytes)
+    throw Error(file.string() + ": " + std::to_string(size) + " bytes, more than the " +
+                std::to_string(kMaxSceneBytes) + " this program reads");
+  return readWholeFile(file);
 }
 
 }  // namespace saccade::core

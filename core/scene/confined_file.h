@@ -8,13 +8,16 @@
 
 namespace saccade::core {
 
+/// Largest scene, buffer or material file that is read.
+inline constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;
+
 /// The path of `relative` (as written in a scene file, already decoded) under `folder`. Throws core::Error,
 /// starting with `who`, for absolute paths, "..", names that leave the folder through a link, and anything
 /// that is not a regular file.
 std::filesystem::path confinedFile(const std::filesystem::path& folder, const std::string& relative,
                                    const std::string& who);
 
-/// The whole of a regular file of at most `maxBytes`. Throws core::Error.
-std::vector<std::uint8_t> readWholeFile(const std::filesystem::path& file, std::uint64_t maxBytes);
+/// The whole of a regular file of at most kMaxSceneBytes. Throws core::Error.
+std::vector<std::uint8_t> readSceneFile(const std::filesystem::path& file);
 
 }  // namespace saccade::core

@@ -10,6 +10,7 @@ namespace {
 constexpr float kPanelSide = 1, kPanelHeight = 0.95f, kPanelRadiance = 15;
 constexpr float kFov = 60;
 constexpr float kEyeHeight = 1.6f;
+constexpr float kSmallestRoom = 1.2f;
 /// Rays to each face of the bounds: a grid of this many points a side; a face is open when more than half
 /// miss.
 constexpr int kFaceGrid = 3;
@@ -141,8 +142,11 @@ Surroundings look(const Scene& scene) {
     hits += face.hits;
     fronts += face.fronts;
   }
-  // A solid thing surrounds its middle too, but shows its backs there.
-  out.interior = floor.hits >= kMost && closedSides >= 3 && 2 * fronts >= hits;
+  // A solid thing surrounds its middle too, but shows its backs there; a shelf of samples is no room for a
+  // walker.
+  const Vec3 extent = scene.bounds.extent();
+  const bool roomy = std::min({extent.x, extent.y, extent.z}) >= kSmallestRoom;
+  out.interior = roomy && floor.hits >= kMost && closedSides >= 3 && 3 * fronts >= 2 * hits;
   return out;
 }
 

@@ -126,7 +126,7 @@ Bytes resolve(const Element& owner, const fs::path& folder) {
   if (colon != std::string::npos && uri.find('/') > colon)
     owner.refuse("URI has the scheme '" + uri.substr(0, colon) +
                  "'; only data: and files beside the scene are read");
-  return readWholeFile(confinedFile(folder, decodePercent(uri, owner.path()), owner.path()), kMaxSceneBytes);
+  return readSceneFile(confinedFile(folder, decodePercent(uri, owner.path()), owner.path()));
 }
 
 std::vector<Bytes> readBuffers(const Element& root, const Parts& parts, const fs::path& folder) {
@@ -198,7 +198,7 @@ void warnOfWhatIsLeftOut(const Json& json, Warnings& warnings) {
 
 GatedGltf readGatedGltf(const fs::path& file) {
   const std::string who = file.filename().string();
-  const Bytes bytes = readWholeFile(file, kMaxSceneBytes);
+  const Bytes bytes = readSceneFile(file);
   if (bytes.empty()) throw Error(who + ": the file is empty");
   const Parts parts = split(bytes, who);
   const Json json = parseJson(parts.json, who);

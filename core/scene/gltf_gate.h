@@ -28,7 +28,6 @@ struct GatedGltf {
 };
 
 inline constexpr int kMaxJsonDepth = 64;
-inline constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;      ///< one file
 inline constexpr std::uint64_t kMaxAccessorElements = 1u << 28;  ///< elements of one accessor
 
 /// Reads a .gltf or .glb (told apart by content) and the buffers and images it names. Throws core::Error

@@ -14,7 +14,6 @@
 namespace saccade::core {
 namespace {
 
-constexpr std::uint64_t kMaxObjBytes = 4ull << 30;
 constexpr float kCreaseDegrees = 30;
 
 /// Reads only MTL files in the scene's folder. What goes wrong is kept and thrown once tinyobj has returned.
@@ -27,7 +26,7 @@ class ConfinedMtlReader : public tinyobj::MaterialReader {
     std::error_code failed;
     if (!std::filesystem::exists(folder_ / name, failed)) return false;  // tinyobj tries the next, then warns
     try {
-      const auto bytes = readWholeFile(confinedFile(folder_, name, "mtllib"), kMaxObjBytes);
+      const auto bytes = readSceneFile(confinedFile(folder_, name, "mtllib"));
       std::istringstream in(std::string(bytes.begin(), bytes.end()));
       tinyobj::LoadMtl(byName, materials, &in, warning, error);
     } catch (const Error& e) {
@@ -50,16 +49,21 @@ struct Parsed {
   std::vector<tinyobj::material_t> materials;
 };
 
+/// The parser's own warnings; it repeats some for every material, so only the first few are kept.
 void addLines(const std::string& text, Warnings& warnings) {
+  constexpr int kKept = 3;
   std::istringstream lines(text);
+  int count = 0;
   for (std::string line; std::getline(lines, line);)
-    if (!line.empty()) warnings.push_back(line);
+    if (!line.empty() && ++count <= kKept) warnings.push_back(line);
+  if (count > kKept)
+    warnings.push_back("and " + std::to_string(count - kKept) + " more such lines from the OBJ parser");
 }
 
 Parsed parse(const std::filesystem::path& file, Warnings& warnings) {
   const std::string who = file.filename().string();
   const std::filesystem::path folder = file.parent_path();
-  const auto bytes = readWholeFile(file, kMaxObjBytes);
+  const auto bytes = readSceneFile(file);
   std::istringstream in(std::string(bytes.begin(), bytes.end()));
   Parsed out;
   ConfinedMtlReader reader(folder);

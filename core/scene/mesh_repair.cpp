@@ -57,19 +57,6 @@ std::vector<T> gather(const std::vector<T>& from, const std::vector<std::uint32_
   return out;
 }
 
-/// A mesh whose vertex i is the old vertex sources[i].
-Mesh gatherVertices(const Mesh& m, const std::vector<std::uint32_t>& sources) {
-  Mesh out;
-  out.positions = gather(m.positions, sources);
-  out.normals = gather(m.normals, sources);
-  out.tangents = gather(m.tangents, sources);
-  out.uv0 = gather(m.uv0, sources);
-  out.uv1 = gather(m.uv1, sources);
-  out.colors = gather(m.colors, sources);
-  out.lightmapUv = gather(m.lightmapUv, sources);
-  return out;
-}
-
 /// The unit normal of a triangle, in double precision so that small triangles have one too.
 Vec3 faceNormal(const Mesh& m, std::size_t first) {
   const glm::dvec3 a(m.positions[m.indices[first]]);
@@ -206,6 +193,18 @@ std::vector<std::uint32_t> weldedVertices(const std::vector<Vec3>& positions) {
   std::vector<std::uint32_t> out(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i)
     out[i] = first.try_emplace(positions[i], static_cast<std::uint32_t>(i)).first->second;
+  return out;
+}
+
+Mesh gatherVertices(const Mesh& m, const std::vector<std::uint32_t>& sources) {
+  Mesh out;
+  out.positions = gather(m.positions, sources);
+  out.normals = gather(m.normals, sources);
+  out.tangents = gather(m.tangents, sources);
+  out.uv0 = gather(m.uv0, sources);
+  out.uv1 = gather(m.uv1, sources);
+  out.colors = gather(m.colors, sources);
+  out.lightmapUv = gather(m.lightmapUv, sources);
   return out;
 }
 

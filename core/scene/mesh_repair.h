@@ -20,6 +20,9 @@ void repairMesh(Mesh& mesh, bool needsTangents, int normalMapUvSet, RepairCounts
 /// For every position the smallest index of a vertex with the same position (bit for bit, -0 = 0).
 std::vector<std::uint32_t> weldedVertices(const std::vector<Vec3>& positions);
 
+/// A mesh without triangles whose vertex i is the old vertex sources[i].
+Mesh gatherVertices(const Mesh& mesh, const std::vector<std::uint32_t>& sources);
+
 /// New mesh of the given triangles (indices into mesh.indices / 3); vertices in order of first use.
 Mesh subMesh(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
 

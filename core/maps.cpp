@@ -1,0 +1,301 @@
+#include "core/maps.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+
+#include "core/atomic_file.h"
+#include "core/content_hash.h"
+#include "core/math/half.h"
+#include "core/scene/mesh_repair.h"
+
+namespace saccade::core {
+namespace {
+
+// The file: magic, version, byte order mark, key, size, layers, photons, quality, texels, charts, checksum of
+// all that precedes it. Numbers in the machine's byte order, which the mark tells.
+constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'M', 'A', 'P', 'S', '\n'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kByteOrder = 0x01020304;
+constexpr std::uint32_t kLargestSide = 65536;
+
+class Writer {
+ public:
+  template <class T>
+  void number(T value) {
+    raw(&value, sizeof value);
+  }
+  template <class T>
+  void array(const std::vector<T>& values) {
+    number<std::uint64_t>(values.size());
+    raw(values.data(), values.size() * sizeof(T));
+  }
+  void raw(const void* data, std::size_t bytes) {
+    const auto* from = static_cast<const std::uint8_t*>(data);
+    bytes_.insert(bytes_.end(), from, from + bytes);
+  }
+  std::vector<std::uint8_t>& bytes() { return bytes_; }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+class Reader {
+ public:
+  Reader(std::span<const std::uint8_t> bytes, std::string name) : rest_(bytes), name_(std::move(name)) {}
+
+  template <class T>
+  T number() {
+    T value;
+    take(&value, sizeof value);
+    return value;
+  }
+  template <class T>
+  std::vector<T> array() {
+    const auto count = number<std::uint64_t>();
+    if (count > rest_.size() / sizeof(T)) refuse("is cut off");
+    std::vector<T> out(static_cast<std::size_t>(count));
+    take(out.data(), out.size() * sizeof(T));
+    return out;
+  }
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw Error(name_ + ": this illumination map file " + why + "; bake again");
+  }
+  bool atEnd() const { return rest_.empty(); }
+
+ private:
+  void take(void* to, std::size_t bytes) {
+    if (bytes > rest_.size()) refuse("is cut off");
+    if (bytes > 0) std::memcpy(to, rest_.data(), bytes);
+    rest_ = rest_.subspan(bytes);
+  }
+  std::span<const std::uint8_t> rest_;
+  std::string name_;
+};
+
+std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
+  ContentHash hash;
+  hash.add(bytes);
+  return hash.value();
+}
+
+void readHeader(Reader& in, IlluminationMaps& maps, std::uint64_t key) {
+  if (in.number<std::array<char, 8>>() != kMagic) in.refuse("is none (wrong first bytes)");
+  const auto version = in.number<std::uint32_t>();
+  if (in.number<std::uint32_t>() != kByteOrder) in.refuse("was written on a machine of another byte order");
+  if (version != kVersion)
+    in.refuse("has version " + std::to_string(version) + ", must be " + std::to_string(kVersion));
+  maps.key = in.number<std::uint64_t>();
+  if (key != 0 && maps.key != key) in.refuse("belongs to another scene or another state of it");
+  const auto width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>(),
+             layers = in.number<std::uint32_t>();
+  if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide || layers < 1 || layers > 2)
+    in.refuse("states an impossible size");
+  maps.width = static_cast<int>(width);
+  maps.height = static_cast<int>(height);
+  maps.layers = static_cast<int>(layers);
+  maps.photons = in.number<std::uint64_t>();
+  const std::vector<char> quality = in.array<char>();
+  maps.quality.assign(quality.begin(), quality.end());
+}
+
+void readTexels(Reader& in, IlluminationMaps& maps) {
+  maps.texels = in.array<std::uint16_t>();
+  const std::uint64_t wanted = std::uint64_t{3} * static_cast<std::uint64_t>(maps.width) *
+                               static_cast<std::uint64_t>(maps.height) *
+                               static_cast<std::uint64_t>(maps.layers);
+  if (maps.texels.size() != wanted) in.refuse("holds another number of texels than its size says");
+  constexpr std::uint16_t kExponent = 0x7C00;
+  if (std::any_of(maps.texels.begin(), maps.texels.end(),
+                  [](std::uint16_t t) { return (t & kExponent) == kExponent; }))
+    in.refuse("holds texels that are not finite");
+}
+
+ObjectCharts readCharts(Reader& in) {
+  ObjectCharts charts;
+  charts.sourceVertex = in.array<std::uint32_t>();
+  charts.uv = in.array<Vec2>();
+  charts.indices = in.array<std::uint32_t>();
+  const std::size_t vertices = charts.sourceVertex.size();
+  const bool good = charts.uv.size() == vertices && charts.indices.size() % 3 == 0 &&
+                    std::all_of(charts.indices.begin(), charts.indices.end(),
+                                [&](std::uint32_t i) { return i < vertices; });
+  if (!good) in.refuse("holds charts that do not fit together");
+  return charts;
+}
+
+template <class V>
+void addVector(ContentHash& hash, const V& v) {
+  for (int c = 0; c < V::length(); ++c) hash.add(v[c]);
+}
+
+void addSlot(ContentHash& hash, const TextureSlot& slot) {
+  hash.add(slot.texture);
+  hash.add(slot.uvSet);
+}
+
+void addMaterial(ContentHash& hash, const Material& m) {
+  addVector(hash, m.baseColor);
+  addVector(hash, m.emission);
+  addVector(hash, m.specularColor);
+  for (const float f :
+       {m.alpha, m.metallic, m.roughness, m.normalScale, m.ior, m.specular, m.transmission, m.alphaCutoff})
+    hash.add(f);
+  for (const TextureSlot& slot :
+       {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.emissionTexture, m.specularTexture,
+        m.specularColorTexture, m.transmissionTexture})
+    addSlot(hash, slot);
+  hash.add(m.alphaMode);
+  hash.add(m.doubleSided);
+  hash.add(m.unlit);
+}
+
+void addTexture(ContentHash& hash, const Texture& t) {
+  hash.add(t.image.width());
+  hash.add(t.image.height());
+  const auto& pixels = t.image.pixels();
+  static_assert(sizeof(Rgba8) == 4);
+  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size() * sizeof(Rgba8)));
+  hash.add(t.wrapS);
+  hash.add(t.wrapT);
+  hash.add(t.nearest);
+  hash.add(t.srgb);
+}
+
+/// Corner by corner, so that splitting vertices along chart borders changes nothing.
+void addObject(ContentHash& hash, const Object& o) {
+  hash.add(o.material);
+  hash.add(o.closed);
+  hash.add(o.id != 0);
+  const Mesh& m = o.mesh;
+  hash.add(static_cast<std::uint64_t>(m.indices.size()));
+  for (const bool has :
+       {m.normals.empty(), m.tangents.empty(), m.uv0.empty(), m.uv1.empty(), m.colors.empty()})
+    hash.add(has);
+  for (const std::uint32_t i : m.indices) {
+    addVector(hash, m.positions[i]);
+    if (!m.normals.empty()) addVector(hash, m.normals[i]);
+    if (!m.tangents.empty()) addVector(hash, m.tangents[i]);
+    if (!m.uv0.empty()) addVector(hash, m.uv0[i]);
+    if (!m.uv1.empty()) addVector(hash, m.uv1[i]);
+    if (!m.colors.empty()) addVector(hash, m.colors[i]);
+  }
+}
+
+void addLight(ContentHash& hash, const PunctualLight& l) {
+  hash.add(l.type);
+  addVector(hash, l.position);
+  addVector(hash, l.direction);
+  addVector(hash, l.intensity);
+  for (const float f : {l.range, l.cosInner, l.cosOuter}) hash.add(f);
+}
+
+}  // namespace
+
+Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
+  const auto column = static_cast<std::size_t>(std::clamp(x, 0, width - 1));
+  const auto row = static_cast<std::size_t>(std::clamp(y, 0, height - 1));
+  const auto plane = static_cast<std::size_t>(std::clamp(layer, 0, layers - 1));
+  const std::size_t at =
+      ((plane * static_cast<std::size_t>(height) + row) * static_cast<std::size_t>(width) + column) * 3;
+  return Vec3(fromHalf(texels[at]), fromHalf(texels[at + 1]), fromHalf(texels[at + 2]));
+}
+
+void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts) {
+  if (charts.size() != scene.objects.size())
+    throw Error(scene.path + ": the charts are for " + std::to_string(charts.size()) +
+                " objects, the scene has " + std::to_string(scene.objects.size()));
+  for (std::size_t o = 0; o < charts.size(); ++o) {
+    Mesh& mesh = scene.objects[o].mesh;
+    const ObjectCharts& c = charts[o];
+    const bool fits = c.indices.size() == mesh.indices.size() && c.uv.size() == c.sourceVertex.size() &&
+                      std::all_of(c.sourceVertex.begin(), c.sourceVertex.end(),
+                                  [&](std::uint32_t v) { return v < mesh.positions.size(); });
+    if (!fits)
+      throw Error(scene.path + ": the charts of object '" + scene.objects[o].name + "' do not fit its mesh");
+    mesh = gatherVertices(mesh, c.sourceVertex);
+    mesh.lightmapUv = c.uv;
+    mesh.indices = c.indices;
+  }
+}
+
+std::uint64_t sceneKey(const Scene& scene) {
+  ContentHash hash;
+  hash.add(kVersion);
+  hash.add(static_cast<std::uint64_t>(scene.objects.size()));
+  for (const Object& o : scene.objects) addObject(hash, o);
+  hash.add(static_cast<std::uint64_t>(scene.materials.size()));
+  for (const Material& m : scene.materials) addMaterial(hash, m);
+  hash.add(static_cast<std::uint64_t>(scene.textures.size()));
+  for (const Texture& t : scene.textures) addTexture(hash, t);
+  hash.add(static_cast<std::uint64_t>(scene.lights.size()));
+  for (const PunctualLight& l : scene.lights) addLight(hash, l);
+  return hash.value();
+}
+
+std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings) {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  std::filesystem::path folder;
+  if (cache != nullptr && *cache == '/') {
+    folder = cache;
+  } else if (home != nullptr && *home != '\0') {
+    folder = std::filesystem::path(home) / ".cache";
+  } else {
+    throw Error("no place to keep illumination maps: set XDG_CACHE_HOME or HOME, or name a file with --maps");
+  }
+  ContentHash hash;
+  hash.add(key);
+  hash.add(settings);
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string name;
+  for (int shift = 60; shift >= 0; shift -= 4) name += kDigits[hash.value() >> shift & 15];
+  return folder / "saccade" / (name + ".maps");
+}
+
+IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key) {
+  const std::vector<std::uint8_t> bytes = readWholeFile(file);
+  constexpr std::size_t kSum = sizeof(std::uint64_t);
+  const std::size_t body = bytes.size() < kSum ? 0 : bytes.size() - kSum;
+  const std::span<const std::uint8_t> content(bytes.data(), body);
+  Reader in(content, file.string());
+  IlluminationMaps maps;
+  readHeader(in, maps, key);
+  std::uint64_t stated = 0;
+  std::memcpy(&stated, bytes.data() + body, kSum);
+  if (stated != checksum(content)) in.refuse("is damaged or cut off (checksum)");
+  readTexels(in, maps);
+  const auto objects = in.number<std::uint64_t>();
+  if (objects > body) in.refuse("states an impossible number of objects");
+  for (std::uint64_t o = 0; o < objects; ++o) maps.charts.push_back(readCharts(in));
+  if (!in.atEnd()) in.refuse("has bytes after its end");
+  return maps;
+}
+
+void writeMaps(const std::filesystem::path& file, const IlluminationMaps& maps) {
+  Writer out;
+  out.number(kMagic);
+  out.number(kVersion);
+  out.number(kByteOrder);
+  out.number(maps.key);
+  out.number(static_cast<std::uint32_t>(maps.width));
+  out.number(static_cast<std::uint32_t>(maps.height));
+  out.number(static_cast<std::uint32_t>(maps.layers));
+  out.number(maps.photons);
+  out.array(std::vector<char>(maps.quality.begin(), maps.quality.end()));
+  out.array(maps.texels);
+  out.number<std::uint64_t>(maps.charts.size());
+  for (const ObjectCharts& c : maps.charts) {
+    out.array(c.sourceVertex);
+    out.array(c.uv);
+    out.array(c.indices);
+  }
+  out.number(checksum(out.bytes()));
+  std::error_code ignored;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+  writeFileAtomically(file, out.bytes());
+}
+
+}  // namespace saccade::core
