@@ -12,15 +12,15 @@ namespace {
 constexpr float kSameIndex = 1e-3f;
 constexpr float kLowestCosine = 1e-6f;
 
-/// E = F0 a + b by channel, at most 1.
-Vec3 albedoOf(const core::AlbedoPair& pair, const Vec3& f0) {
-  return glm::min(f0 * pair.scale + Vec3(pair.bias), Vec3(1));
+/// E = F0 a + F90 b by channel, at most 1.
+Vec3 albedoOf(const core::AlbedoPair& pair, const Vec3& f0, float f90) {
+  return glm::min(f0 * pair.scale + Vec3(f90 * pair.bias), Vec3(1));
 }
 
-Vec3 schlick(const Vec3& f0, float cosine) {
+Vec3 schlick(const Vec3& f0, float f90, float cosine) {
   const float m = std::clamp(1 - cosine, 0.0f, 1.0f);
   const float m2 = m * m;
-  return f0 + (Vec3(1) - f0) * (m2 * m2 * m);
+  return f0 + (Vec3(f90) - f0) * (m2 * m2 * m);
 }
 
 float largest(const Vec3& c) { return std::max({c.x, c.y, c.z}); }
@@ -86,20 +86,25 @@ Bsdf::Bsdf(const Surface& surface, const Vec3& toEye) : frame_(surface.ns), ng_(
   mirror_ = 1 - glass_;
   lambert_ = (1 - m.metallic) * (1 - m.transmission);
   f0Dielectric_ = m.dielectricF0;
-  if (mirror_ > 0) f0_ = (m.baseColor * m.metallic + m.dielectricF0 * lambert_) / mirror_;
+  f90Dielectric_ = m.dielectricF90;
+  if (mirror_ > 0) {
+    f0_ = (m.baseColor * m.metallic + m.dielectricF0 * lambert_) / mirror_;
+    f90_ = (m.metallic + m.dielectricF90 * lambert_) / mirror_;
+  }
   specularAny_ = true;
   diffuseAny_ = lambert_ > 0 && largest(baseColor_) > 0;
   lambdaV_ = delta_ ? 0 : ggxLambda(v_.z, alpha_);
   if (!diffuseAny_) return;
   const core::AlbedoPair pair = core::directionalAlbedo(v_.z, roughness_);
-  const float specular = core::luminance(albedoOf(pair, f0_)) * mirror_ + glass_;
-  const float diffuse = core::luminance(baseColor_ * (Vec3(1) - albedoOf(pair, f0Dielectric_))) * lambert_;
+  const float specular = core::luminance(albedoOf(pair, f0_, f90_)) * mirror_ + glass_;
+  const float diffuse =
+      core::luminance(baseColor_ * (Vec3(1) - albedoOf(pair, f0Dielectric_, f90Dielectric_))) * lambert_;
   diffuseShare_ = diffuse > 0 ? diffuse / (diffuse + specular) : 0;
 }
 
 Bsdf::Interface Bsdf::facet(float cosVH) const {
   Interface f{Vec3(0), Vec3(0)};
-  if (mirror_ > 0) f.reflect = schlick(f0_, cosVH) * mirror_;
+  if (mirror_ > 0) f.reflect = schlick(f0_, f90_, cosVH) * mirror_;
   if (glass_ > 0) {
     float r = fresnelDielectric(cosVH, eta_);
     if (thin_) r = 2 * r / (1 + r);
@@ -125,16 +130,16 @@ bool Bsdf::sideAgrees(const Vec3& wiWorld, const Vec3& wiLocal) const {
 
 Vec3 Bsdf::evalDiffuse(const Vec3& wi) const {
   if (!diffuseAny_ || wi.z <= 0) return Vec3(0);
-  const Vec3 ev = albedoOf(core::directionalAlbedo(v_.z, roughness_), f0Dielectric_);
-  const Vec3 el = albedoOf(core::directionalAlbedo(wi.z, roughness_), f0Dielectric_);
-  const Vec3 mean = albedoOf(core::meanAlbedo(roughness_), f0Dielectric_);
+  const Vec3 ev = albedoOf(core::directionalAlbedo(v_.z, roughness_), f0Dielectric_, f90Dielectric_);
+  const Vec3 el = albedoOf(core::directionalAlbedo(wi.z, roughness_), f0Dielectric_, f90Dielectric_);
+  const Vec3 mean = albedoOf(core::meanAlbedo(roughness_), f0Dielectric_, f90Dielectric_);
   const Vec3 room = glm::max(Vec3(1) - mean, Vec3(1e-4f));
   return baseColor_ * (lambert_ / core::kPi * wi.z) * (Vec3(1) - ev) * (Vec3(1) - el) / room;
 }
 
 Vec3 Bsdf::diffuseUnderMap() const {
   if (!diffuseAny_) return Vec3(0);
-  const Vec3 ev = albedoOf(core::directionalAlbedo(v_.z, roughness_), f0Dielectric_);
+  const Vec3 ev = albedoOf(core::directionalAlbedo(v_.z, roughness_), f0Dielectric_, f90Dielectric_);
   return baseColor_ * (Vec3(1) - ev) * (lambert_ / core::kPi);
 }
 
@@ -254,7 +259,7 @@ std::optional<BsdfSample> Bsdf::sample(float uLobe, const Vec2& u, unsigned lobe
     return s;
   }
   if (!(lobes & kLobeSpecular) || !specularAny_) return std::nullopt;
-  const float rest = (uLobe - diffuse) / (1 - diffuse);
+  const float rest = std::min((uLobe - diffuse) / (1 - diffuse), 0x1.fffffep-1f);  // rounding reaches 1
   std::optional<BsdfSample> s = sampleSpecular(rest, u);
   if (!s || diffuse == 0) return s;
   if (s->delta) {

@@ -1,7 +1,7 @@
 // Scattering at a surface point.
 //
 //   metallic-roughness (glTF 2.0, appendix B) with KHR_materials_transmission, _ior, _specular:
-//     S   GGX reflection, height-correlated Smith, Schlick's Fresnel with F90 = 1
+//     S   GGX reflection, height-correlated Smith, Schlick's Fresnel
 //     D   Lambert layered under it as core/scene/specular_albedo.h says
 //     G   dielectric with exact Fresnel: GGX reflection and refraction (Walter et al. 2007); a closed object
 //     is a
@@ -104,6 +104,7 @@ class Bsdf {
   float lambert_ = 0;    ///< weight of D
   Vec3 f0_{0};           ///< of S, metal and dielectric mixed
   Vec3 f0Dielectric_{0};
+  float f90_ = 1, f90Dielectric_ = 1;
   Vec3 baseColor_{0};
   float lambdaV_ = 0;
   float diffuseShare_ = 0;  ///< probability of D when all lobes are sampled

@@ -76,6 +76,8 @@ CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material&
   c.emission = m.emission;
   c.metallic = m.metallic;
   c.dielectricF0 = core::dielectricF0(m);
+  c.dielectricF90 = core::dielectricF90(c.dielectricF0, m.specular);
+  c.specular = m.specular;
   c.roughness = m.roughness;
   c.transmission = m.transmission;
   c.ior = m.ior;

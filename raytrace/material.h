@@ -31,6 +31,8 @@ struct CompiledMaterial {
   float metallic = 0;
   Vec3 dielectricF0{0.04f};
   float roughness = 1;
+  float dielectricF90 = 1;
+  float specular = 1;
   float transmission = 0;
   float ior = 1.5f;
   float diffuseFactor = 1;  ///< core::baseDiffuseFactor
@@ -57,6 +59,7 @@ struct MaterialPoint {
   Vec3 emission{0};    ///< radiance towards the front (both sides when double-sided)
   float metallic = 0;
   Vec3 dielectricF0{0.04f};
+  float dielectricF90 = 1;
   float roughness = 1;  ///< perceptual, [0, 1]
   float transmission = 0;
   float ior = 1.5f;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/specular_albedo.h"
+
 namespace saccade::raytrace {
 namespace {
 
@@ -40,8 +42,12 @@ void applyTextures(const World& world, const Hit& hit, const TriangleRecord& rec
     p.metallic *= t.z;
   }
   if (m.emissionTexture && m.emits()) p.emission *= Vec3(texel(m.emissionTexture));
-  if (m.specularTexture) p.dielectricF0 *= texel(m.specularTexture).w;
-  if (m.specularColorTexture) p.dielectricF0 *= Vec3(texel(m.specularColorTexture));
+  if (m.specularTexture || m.specularColorTexture) {
+    const float specular = m.specularTexture ? texel(m.specularTexture).w : 1;
+    p.dielectricF0 *= specular;
+    if (m.specularColorTexture) p.dielectricF0 *= Vec3(texel(m.specularColorTexture));
+    p.dielectricF90 = core::dielectricF90(p.dielectricF0, m.specular * specular);
+  }
   if (m.transmissionTexture) p.transmission *= texel(m.transmissionTexture).x;
 }
 
@@ -53,6 +59,7 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
   p.emission = m.unlit ? Vec3(0) : m.emission;
   p.metallic = m.metallic;
   p.dielectricF0 = m.dielectricF0;
+  p.dielectricF90 = m.dielectricF90;
   p.roughness = m.roughness;
   p.transmission = m.transmission;
   p.ior = m.ior;
