@@ -1,0 +1,353 @@
+// Corrective samples, the reference over all pixels, and the pool of tracers.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <random>
+
+#include "core/error.h"
+#include "raytrace/corrective_tracer.h"
+#include "raytrace/path_tracer.h"
+#include "raytrace/ray_log.h"
+#include "raytrace/reference.h"
+#include "raytrace/surface.h"
+#include "raytrace/tracer_pool.h"
+#include "tests/unit/raytrace/test_scene.h"
+
+namespace saccade::raytrace {
+namespace {
+
+using tests::planOf;
+using tests::SceneMaker;
+
+/// Window depth of a world point.
+float windowDepth(const core::View& view, const Vec3& p) {
+  const core::Vec4 clip = view.viewProjection() * core::Vec4(p, 1);
+  return 0.5f * clip.z / clip.w + 0.5f;
+}
+
+/// What the base layer would have read back, made by rays through the pixel centres; base radiance is left 0.
+std::shared_ptr<core::FrameSnapshot> frameOf(const World& world, const core::Camera& camera, int width,
+                                             int height) {
+  auto frame = std::make_shared<core::FrameSnapshot>();
+  frame->epoch = 7;
+  frame->view = core::View(camera, width, height, world.scene().bounds);
+  frame->baseAndId.assign(static_cast<std::size_t>(width) * height, core::Vec4(0));
+  frame->depth.assign(static_cast<std::size_t>(width) * height, 1);
+  RayCounters counters;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+      const Ray ray{camera.eye, frame->view.direction(pixel), 0, core::kInfinity};
+      Hit hit;
+      if (!world.intersectVisible(ray, hit, counters)) continue;
+      const std::size_t i = frame->index(x, y);
+      frame->depth[i] = windowDepth(frame->view, camera.eye + hit.t * ray.direction);
+      frame->baseAndId[i].w = static_cast<float>(world.scene().objects[world.record(hit.triangle).object].id);
+    }
+  }
+  core::measureExtents(*frame, world.scene().idCount(), 10);
+  return frame;
+}
+
+core::IlluminationMaps constantMaps(std::uint16_t half) {
+  core::IlluminationMaps maps;
+  maps.width = maps.height = 2;
+  maps.layers = 1;
+  maps.texels.assign(2 * 2 * 3, half);
+  return maps;
+}
+
+core::Camera cameraAt(const Vec3& eye, const Vec3& at) {
+  core::Camera c;
+  c.eye = eye;
+  c.at = at;
+  return c;
+}
+
+SceneMaker room() {
+  SceneMaker m;
+  m.box(m.material(tests::diffuseMaterial({0.6f, 0.5f, 0.4f})), 0, Vec3(-3), Vec3(3), true);
+  m.quad(m.material(tests::diffuseMaterial(Vec3(0), Vec3(10))), 0, {-1, 2.9f, -1}, {2, 0, 0}, {0, 0, 2});
+  m.sphere(m.material(tests::glassMaterial(1.5f, 0)), 1, {-1, 0, 0}, 0.8f, 16);
+  m.sphere(m.material(tests::metalMaterial(Vec3(0.8f), 0.3f)), 2, {1, 0, 0}, 0.8f, 16);
+  m.sphere(m.material(tests::glassMaterial(1.3f, 0.4f)), 3, {0, 1.2f, 0}, 0.6f, 16);
+  core::Material plastic = tests::diffuseMaterial({0.2f, 0.4f, 0.8f});
+  plastic.ior = 1.5f;
+  plastic.roughness = 0;
+  m.sphere(m.material(plastic), 4, {0, -1.2f, 0}, 0.6f, 16);
+  return m;
+}
+
+constexpr std::uint16_t kHalfOne = 0x3c00, kHalfPi = 0x4248;  // 1 and 3.140625
+
+TEST(CorrectiveTracer, AMirrorShowsTheLampTimesFresnel) {
+  SceneMaker m;
+  m.quad(m.material(tests::metalMaterial(Vec3(0.9f), 0)), 1, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+  m.quad(m.material(tests::diffuseMaterial(Vec3(0), Vec3(2, 3, 4))), 0, {2, 1, -1}, {0, 0, 2}, {0, 2, 0});
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({-2, 2, 0}, {0, 0, 0}), 33, 33);
+  RayCounters counters;
+  const core::Sample s = tracer.trace(*frame, 16, 16, 3, counters);
+  const float f = 0.9f + 0.1f * std::pow(1 - std::sqrt(0.5f), 5.0f);
+  EXPECT_NEAR(s.correction.x, 2 * f, 1e-4);
+  EXPECT_NEAR(s.correction.z, 4 * f, 2e-4);
+  EXPECT_LT(glm::length(s.position), 1e-4f);
+  EXPECT_LT(glm::length(s.normal - Vec3(0, 1, 0)), 1e-5f);
+  EXPECT_NEAR(s.cosView, std::sqrt(0.5f), 1e-4);
+  EXPECT_NEAR(s.viewDepth, std::sqrt(8.0f), 1e-4);
+  EXPECT_FALSE(s.fromDepth);
+  EXPECT_EQ(s.id, 1u);
+  EXPECT_EQ(s.level, 3);
+  EXPECT_EQ(counters.rays, 2u);
+}
+
+TEST(CorrectiveTracer, BasePlusCorrectionIsTheTracedImageWhereTheMapsAreExact) {
+  // In a shell of radiance 1 the irradiance on a convex body is pi: maps are exact, so base + correction must
+  // be what the path tracer finds, for every kind of material.
+  core::Material plastic = tests::diffuseMaterial(Vec3(0.5f));
+  plastic.ior = 1.5f;
+  plastic.roughness = 0.3f;
+  core::Material mixed = plastic;
+  mixed.metallic = 0.4f;
+  mixed.transmission = 0.5f;
+  for (const core::Material& material : {plastic, mixed, tests::metalMaterial(Vec3(0.7f), 0.6f),
+                                         tests::glassMaterial(1.5f, 0), tests::glassMaterial(1.5f, 0.4f)}) {
+    SceneMaker m;
+    m.box(m.material(tests::diffuseMaterial(Vec3(0), Vec3(1))), 0, Vec3(-3), Vec3(3), true);
+    m.sphere(m.material(material), 1, Vec3(0), 1, 32);
+    World world(m.scene, planOf(16));
+    const core::IlluminationMaps maps = constantMaps(kHalfPi);
+    world.setMaps(&maps);
+    CorrectiveOptions options;
+    options.samplesPerPixel = 64;
+    const CorrectiveTracer tracer(world, options);
+    const auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 16, 16);
+    const TraceAllResult all = traceAll(tracer, *frame, 0, {});
+    PathOptions paths;
+    paths.samplesPerPixel = 256;
+    paths.bounces = 17;
+    RayCounters counters;
+    double corrected = 0, traced = 0;
+    for (int y = 6; y < 10; ++y) {
+      for (int x = 6; x < 10; ++x) {
+        const Vec3 d = glm::normalize(frame->view.direction({x + 0.5f, y + 0.5f}));
+        const Ray ray{frame->view.camera().eye, d, 0, core::kInfinity};
+        Hit hit;
+        ASSERT_TRUE(world.intersect(ray, hit, counters));
+        const BaseLight base = baseLight(world, hit, d);
+        corrected += base.reflected.x + base.emitted.x + all.corrections[frame->index(x, y)].x;
+        traced += pathRadiance(world, ray, paths, counters).x;
+      }
+    }
+    EXPECT_NEAR(corrected / traced, 1, 0.012)
+        << "metallic " << material.metallic << " roughness " << material.roughness;
+  }
+}
+
+TEST(CorrectiveTracer, BlendIsCoverage) {
+  SceneMaker m;
+  core::Material veil = tests::diffuseMaterial(Vec3(0.5f), Vec3(4));
+  veil.alphaMode = core::AlphaMode::blend;
+  veil.alpha = 0.25f;
+  m.quad(m.material(veil), 1, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  m.quad(m.material(tests::diffuseMaterial(Vec3(0), Vec3(1, 2, 3))), 0, {-3, -3, -1}, {6, 0, 0}, {0, 6, 0});
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({0, 0, 2}, Vec3(0)), 9, 9);
+  RayCounters counters;
+  const core::Sample s = tracer.trace(*frame, 4, 4, 7, counters);
+  // The base holds 0.25 * 4; index 1 leaves no specular lobe, so what is missing is what lies behind.
+  EXPECT_NEAR(s.correction.x, 0.75f, 1e-5);
+  EXPECT_NEAR(s.correction.z, 2.25f, 1e-5);
+}
+
+TEST(CorrectiveTracer, WhereTheRayMissesThePointOfTheDepthBufferIsShaded) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 64, 64);
+  // The rasteriser's silhouette of the metal sphere is a pixel wider than the rays'.
+  int x = 32;
+  while (frame->idAt(x, 32) != 2) ++x;
+  const std::size_t edge = frame->index(x, 32), beyond = frame->index(x - 1, 32);
+  frame->baseAndId[beyond].w = 2;
+  frame->depth[beyond] = frame->depth[edge];
+  RayCounters counters;
+  const core::Sample s = tracer.trace(*frame, x - 1, 32, 7, counters);
+  EXPECT_TRUE(s.fromDepth);
+  EXPECT_NEAR(glm::length(s.position - Vec3(1, 0, 0)), 0.8f, 0.01f);
+  EXPECT_GE(s.cosView, 0);
+  EXPECT_GT(s.viewDepth, 0);
+  EXPECT_EQ(counters.nonFinite, 0u);
+  EXPECT_EQ(traceAll(tracer, *frame, 0, {}).fromDepth, 1u);
+}
+
+TEST(CorrectiveTracer, AnUnknownIdIsAnErrorAndInfiniteLightIsZeroAndCounted) {
+  SceneMaker m;
+  m.quad(m.material(tests::metalMaterial(Vec3(0.9f), 0)), 1, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+  m.quad(m.material(tests::diffuseMaterial(Vec3(0), Vec3(core::kInfinity))), 0, {2, 1, -1}, {0, 0, 2},
+         {0, 2, 0});
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  auto frame = frameOf(world, cameraAt({-2, 2, 0}, {0, 0, 0}), 33, 33);
+  RayCounters counters;
+  EXPECT_EQ(tracer.trace(*frame, 16, 16, 7, counters).correction, Vec3(0));
+  EXPECT_EQ(counters.nonFinite, 1u);
+  frame->baseAndId[frame->index(16, 16)].w = 9;
+  EXPECT_THROW(tracer.trace(*frame, 16, 16, 7, counters), core::Error);
+}
+
+/// Corrections by pixel.
+using ByPixel = std::map<std::pair<int, int>, Vec3>;
+
+TEST(Reference, TheSameForAnyNumberOfThreadsAndForTheSingleSample) {
+  const SceneMaker m = room();
+  World world(m.scene, planOf());
+  const core::IlluminationMaps maps = constantMaps(kHalfOne);
+  world.setMaps(&maps);
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 60, 50);
+  const TraceAllResult inlined = traceAll(tracer, *frame, 0, {});
+  EXPECT_EQ(inlined.traced, frame->nonDiffusePixels);
+  EXPECT_GT(inlined.traced, 300u);
+  EXPECT_EQ(inlined.counters.nonFinite, 0u);
+  for (int threads : {1, 2, 8}) {
+    const TraceAllResult r = traceAll(tracer, *frame, threads, {});
+    EXPECT_EQ(r.corrections, inlined.corrections) << threads;
+    EXPECT_EQ(r.counters.rays, inlined.counters.rays);
+  }
+  RayCounters counters;
+  double energy = 0;
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 60; ++x) {
+      if (frame->idAt(x, y) == 0) continue;
+      const Vec3 c = tracer.trace(*frame, x, y, 1, counters).correction;
+      ASSERT_EQ(c, Vec3(inlined.corrections[frame->index(x, y)]));
+      energy += std::fabs(c.x);
+    }
+  }
+  EXPECT_GT(energy, 1);
+}
+
+TEST(Reference, ProgressEndsAtOneAndStopThrows) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 20, 20);
+  double last = 0;
+  core::Progress progress;
+  progress.report = [&](double f) {
+    EXPECT_GE(f, last);
+    last = f;
+  };
+  traceAll(tracer, *frame, 2, progress);
+  EXPECT_EQ(last, 1);
+  std::stop_source source;
+  source.request_stop();
+  progress.stop = source.get_token();
+  EXPECT_THROW(traceAll(tracer, *frame, 2, progress), core::Error);
+}
+
+TEST(TracerPool, GivesWhatTheReferenceGivesOnAnyNumberOfThreads) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const core::FramePtr frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 60, 50);
+  const TraceAllResult reference = traceAll(tracer, *frame, 0, {});
+  for (int threads : {0, 1, 2, 8}) {
+    core::RegionQueue regions(64);
+    core::SampleQueue samples;
+    regions.beginFrame(frame);
+    TracerPool pool(tracer, regions, samples, threads);
+    ByPixel found;
+    while (found.size() < reference.traced) {
+      if (threads == 0) {
+        ASSERT_TRUE(pool.runOne());
+      }
+      while (const auto batch =
+                 samples.popUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(5))) {
+        EXPECT_EQ(batch->epoch, 7u);
+        for (const core::Sample& s : batch->samples) found[{s.x, s.y}] = s.correction;
+        if (threads == 0) break;
+      }
+      pool.check();
+    }
+    for (const auto& [pixel, correction] : found) {
+      ASSERT_EQ(correction, Vec3(reference.corrections[frame->index(pixel.first, pixel.second)]));
+    }
+    EXPECT_GE(pool.samples(), reference.traced);
+    EXPECT_GE(pool.rays(), pool.samples());
+  }
+}
+
+TEST(TracerPool, ClosesWithAFullQueueAndWithAnEmptyOne) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const core::FramePtr frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 60, 50);
+  for (bool full : {true, false}) {
+    core::RegionQueue regions(16);
+    core::SampleQueue samples(1);  // the second batch finds it full
+    if (full) regions.beginFrame(frame);
+    TracerPool pool(tracer, regions, samples, 4);
+    while (full && pool.samples() < 3) std::this_thread::yield();
+    pool.close();
+    pool.close();
+    EXPECT_FALSE(pool.runOne());
+  }
+}
+
+TEST(TracerPool, AWorkersExceptionReachesTheOwner) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 20, 20);
+  for (core::Vec4& p : frame->baseAndId) p.w = 9;  // no such object
+  core::measureExtents(*frame, 9, 10);
+  core::RegionQueue regions(16);
+  core::SampleQueue samples;
+  regions.beginFrame(frame);
+  TracerPool pool(tracer, regions, samples, 2);
+  const auto wait = [&] {
+    while (true) {
+      pool.check();
+      std::this_thread::yield();
+    }
+  };
+  EXPECT_THROW(wait(), core::Error);
+}
+
+TEST(RayLog, HoldsEveryRayAndReplaysTheirHits) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 40, 40);
+  RayLog log;
+  RayCounters counters;
+  counters.log = &log;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      if (frame->idAt(x, y) != 0) tracer.trace(*frame, x, y, 7, counters);
+    }
+  }
+  EXPECT_EQ(log.entries().size(), counters.rays);
+  std::uint64_t hits = 0;
+  RayCounters again;
+  for (const RayLog::Entry& e : log.entries()) {
+    Hit hit;
+    if (e.occluded) {
+      hits += world.transmittance(e.ray, again) == 0;
+    } else if (e.object >= 0) {
+      hits += world.intersectVisible(static_cast<std::uint32_t>(e.object), e.ray, hit, again);
+    } else {
+      hits += world.intersect(e.ray, hit, again);
+    }
+  }
+  EXPECT_EQ(replayRays(world, log), hits);
+  EXPECT_GT(hits, 100u);
+}
+
+}  // namespace
+}  // namespace saccade::raytrace
