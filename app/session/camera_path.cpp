@@ -91,33 +91,34 @@ CameraPath CameraPath::read(const std::filesystem::path& file) {
     if (i > 0 && keys[i].seconds <= keys[i - 1].seconds)
       fail(file, i, "t must be later than that of the key before");
   }
-  return CameraPath(std::move(keys));
+  const double begin = keys.front().seconds, end = keys.back().seconds;
+  return {std::move(keys), begin, end};
 }
 
 CameraPath CameraPath::orbit(const core::Camera& camera, double periodSeconds) {
   constexpr int kKeys = 64;  // the spline then leaves the circle by less than 1e-5 of its radius
   const core::Vec3 arm = camera.eye - camera.at;
   std::vector<CameraKey> keys;
-  for (int i = 0; i <= kKeys; ++i) {
+  for (int i = -1; i <= kKeys + 1; ++i) {  // one beyond either end: the circle is closed
     const float angle = glm::two_pi<float>() * static_cast<float>(i) / kKeys;
     CameraKey key{periodSeconds * i / kKeys, camera};
-    if (i > 0 && i < kKeys) {
+    if (i != 0 && i != kKeys) {
       const float c = std::cos(angle), s = std::sin(angle);
       key.camera.eye = camera.at + core::Vec3(c * arm.x + s * arm.z, arm.y, c * arm.z - s * arm.x);
     }
     keys.push_back(key);
   }
-  return CameraPath(std::move(keys));
+  return {std::move(keys), 0, periodSeconds};
 }
 
-CameraPath CameraPath::still(const core::Camera& camera) { return CameraPath({{0, camera}}); }
+CameraPath CameraPath::still(const core::Camera& camera) { return {{{0, camera}}, 0, 0}; }
 
 core::Camera CameraPath::at(double seconds) const {
-  if (seconds <= keys_.front().seconds || keys_.size() == 1) return keys_.front().camera;
-  if (seconds >= keys_.back().seconds) return keys_.back().camera;
+  seconds = std::clamp(seconds, begin_, end_);
   const auto after = std::upper_bound(keys_.begin(), keys_.end(), seconds,
                                       [](double t, const CameraKey& key) { return t < key.seconds; });
   const auto i = static_cast<std::size_t>(after - keys_.begin()) - 1;
+  if (i + 1 == keys_.size()) return keys_.back().camera;
   const auto s = static_cast<float>((seconds - keys_[i].seconds) / (keys_[i + 1].seconds - keys_[i].seconds));
   if (s == 0) return keys_[i].camera;
   core::Camera camera = keys_[i].camera;

@@ -27,11 +27,13 @@ class CameraPath {
 
   /// Clamped at both ends; Catmull-Rom between keys (monotone in time, passes through every key exactly).
   core::Camera at(double seconds) const;
-  double lengthSeconds() const { return keys_.back().seconds; }
+  double lengthSeconds() const { return end_; }
 
  private:
-  explicit CameraPath(std::vector<CameraKey> keys) : keys_(std::move(keys)) {}
-  std::vector<CameraKey> keys_;  ///< at least one
+  CameraPath(std::vector<CameraKey> keys, double begin, double end)
+      : keys_(std::move(keys)), begin_(begin), end_(end) {}
+  std::vector<CameraKey> keys_;  ///< at least one; may reach beyond [begin_, end_] to shape the curve's ends
+  double begin_, end_;           ///< seconds; times of keys
 };
 
 }  // namespace saccade::app

@@ -25,6 +25,7 @@ class StageTimer {
 };
 
 constexpr std::chrono::milliseconds kStopPollInterval{20};
+constexpr int kLateBatches = 32;  // some tenths of a millisecond of splatting
 
 attention::AttentionOptions seeded(attention::AttentionOptions options, std::uint32_t seed) {
   options.seed = seed;
@@ -121,11 +122,15 @@ void FrameLoop::correct(Clock::time_point start, const FrameBudget& budget, cons
   correctUntil(start + std::chrono::duration_cast<Clock::duration>(time), stop);
 }
 
-// Step 6 against the wall clock.
+// Step 6 against the wall clock. What waits in the queue is taken even when drawing used up the time
+// (bounded), else the tracers' work for a frame that is too slow would never be seen.
 void FrameLoop::correctUntil(Clock::time_point deadline, const std::stop_token& stop) {
-  while (Clock::now() < deadline && !stop.stop_requested()) {
-    const Clock::time_point poll = Clock::now() + kStopPollInterval;
-    if (auto batch = samples_.popUntil(std::min(deadline, poll))) take(*batch);
+  for (int late = 0; late < kLateBatches && !stop.stop_requested();) {
+    const Clock::time_point now = Clock::now();
+    auto batch =
+        now < deadline ? samples_.popUntil(std::min(deadline, now + kStopPollInterval)) : samples_.tryPop();
+    if (batch) take(*batch);
+    if (now >= deadline) late = batch ? late + 1 : kLateBatches;
   }
 }
 

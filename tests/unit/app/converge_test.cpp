@@ -176,7 +176,8 @@ TEST_F(LoopTest, NothingIsDrawnAgainWhileNothingMoves) {
 
 TEST_F(LoopTest, NoOutputHoldsNaN) {
   FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
-  for (const core::Vec3& pixel : converge(loop).pixels()) {
+  const core::ImageRgb image = converge(loop);
+  for (const core::Vec3& pixel : image.pixels()) {
     ASSERT_TRUE(std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z));
   }
 }
