@@ -105,16 +105,19 @@ void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool lig
   }
 }
 
-void checkMaterials(const Scene& scene) {
-  for (const Object& o : scene.objects)
+/// Every object names a material that is there; scenes made in memory may leave their nodes to be made here.
+void checkObjects(Scene& scene) {
+  for (const Object& o : scene.objects) {
+    if (o.node >= static_cast<int>(scene.nodes.size())) scene.nodes.resize(static_cast<std::size_t>(o.node) + 1);
     if (o.material < 0 || static_cast<std::size_t>(o.material) >= scene.materials.size())
       throw Error(scene.path + ": object '" + o.name + "' names a material that is not there");
+  }
 }
 
 }  // namespace
 
 void completeScene(Scene& scene, const LoadOptions& options) {
-  checkMaterials(scene);
+  checkObjects(scene);
   scene.timeSeconds = options.timeSeconds;
   for (const std::string& light : options.lights) addLight(scene, light);
   repairAll(scene);

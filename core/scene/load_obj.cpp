@@ -24,7 +24,10 @@ class ConfinedMtlReader : public tinyobj::MaterialReader {
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* byName, std::string* warning, std::string* error) override {
     std::error_code failed;
-    if (!std::filesystem::exists(folder_ / name, failed)) return false;  // tinyobj tries the next, then warns
+    if (!std::filesystem::exists(folder_ / name, failed)) {
+      *warning += std::string("material library ").append(name) + " does not exist beside the scene\n";
+      return false;
+    }
     try {
       const auto bytes = readSceneFile(confinedFile(folder_, name, "mtllib"));
       std::istringstream in(std::string(bytes.begin(), bytes.end()));

@@ -35,7 +35,7 @@ float weight(float cosView, float cosLight, float alpha2) {
 /// Visible normal for view (sin, 0, cos) by Heitz 2018, for (u1, phi) with u1 in (0, 1).
 Vec3 visibleNormal(const Vec3& view, float alpha, float u1, float phi) {
   const Vec3 stretched = glm::normalize(Vec3(alpha * view.x, 0, view.z));
-  const Vec3 t1(0, stretched.x > 0 ? -1.0f : 1.0f, 0);
+  const Vec3 t1(0, 1, 0);
   const Vec3 t2 = glm::cross(stretched, t1);
   const float r = std::sqrt(u1);
   const float a = r * std::cos(phi);

@@ -12,7 +12,7 @@ namespace {
 double albedoByDirections(double cosView, double roughness, double f0) {
   const double alpha = roughness * roughness, alpha2 = alpha * alpha;
   const double sinView = std::sqrt(1 - cosView * cosView);
-  const int polar = 1200, azimuth = 600;
+  const int polar = 500, azimuth = 250;
   double sum = 0;
   for (int i = 0; i < polar; ++i) {
     const double cosLight = (i + 0.5) / polar, sinLight = std::sqrt(1 - cosLight * cosLight);

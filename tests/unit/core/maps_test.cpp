@@ -1,0 +1,201 @@
+// Illumination map files: whole, right, or refused.
+#include "core/maps.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/math/half.h"
+#include "core/scene/load.h"
+#include "tests/unit/core/scene_shapes.h"
+#include "tests/unit/core/temporary_folder.h"
+
+namespace saccade::core {
+namespace {
+
+using namespace saccade::tests;
+
+IlluminationMaps sample() {
+  IlluminationMaps maps;
+  maps.width = 4;
+  maps.height = 3;
+  maps.layers = 2;
+  for (int i = 0; i < 4 * 3 * 2 * 3; ++i) maps.texels.push_back(toHalf(0.25f * static_cast<float>(i)));
+  maps.charts.resize(2);
+  maps.charts[0].sourceVertex = {0, 1, 2, 2};
+  maps.charts[0].uv = {{0, 0}, {1, 0}, {0, 1}, {0.5f, 0.5f}};
+  maps.charts[0].indices = {0, 1, 2, 0, 1, 3};
+  maps.quality = "preview";
+  maps.photons = 12345678901ull;
+  maps.key = 0xABCDEF0123456789ull;
+  return maps;
+}
+
+std::string bytesOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+void write(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+TEST(Half, RoundTripsEveryFiniteValue) {
+  for (std::uint32_t h = 0; h < 0x10000; ++h) {
+    if ((h & 0x7C00) == 0x7C00) continue;
+    EXPECT_EQ(toHalf(fromHalf(static_cast<std::uint16_t>(h))), h);
+  }
+  EXPECT_EQ(fromHalf(toHalf(65504)), 65504);
+  EXPECT_EQ(fromHalf(toHalf(1.0f + 1.0f / 2048)), 1.0f);  // halfway, to even
+}
+
+TEST(Maps, RoundTrip) {
+  TemporaryFolder folder;
+  const IlluminationMaps maps = sample();
+  writeMaps(folder / "a.maps", maps);
+  EXPECT_EQ(folder.entries(), 1u);
+  const IlluminationMaps back = readMaps(folder / "a.maps", maps.key);
+  EXPECT_EQ(back.width, maps.width);
+  EXPECT_EQ(back.height, maps.height);
+  EXPECT_EQ(back.layers, maps.layers);
+  EXPECT_EQ(back.texels, maps.texels);
+  EXPECT_EQ(back.quality, maps.quality);
+  EXPECT_EQ(back.photons, maps.photons);
+  EXPECT_EQ(back.key, maps.key);
+  ASSERT_EQ(back.charts.size(), 2u);
+  EXPECT_EQ(back.charts[0].sourceVertex, maps.charts[0].sourceVertex);
+  EXPECT_EQ(back.charts[0].uv, maps.charts[0].uv);
+  EXPECT_EQ(back.charts[0].indices, maps.charts[0].indices);
+  EXPECT_NO_THROW(readMaps(folder / "a.maps", 0));
+}
+
+TEST(Maps, EveryTruncationAndFlippedBitsAreRefused) {
+  TemporaryFolder folder;
+  writeMaps(folder / "whole.maps", sample());
+  const std::string whole = bytesOf(folder / "whole.maps");
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    write(folder / "cut.maps", whole.substr(0, n));
+    EXPECT_THROW(readMaps(folder / "cut.maps", 0), Error) << n;
+    if (n % 5 != 0) continue;
+    std::string flipped = whole;
+    flipped[n] = static_cast<char>(flipped[n] ^ 0x10);
+    write(folder / "flipped.maps", flipped);
+    EXPECT_THROW(readMaps(folder / "flipped.maps", 0), Error) << n;
+  }
+  write(folder / "long.maps", whole + "x");
+  EXPECT_THROW(readMaps(folder / "long.maps", 0), Error);
+}
+
+TEST(Maps, AnotherScenesFileIsRefused) {
+  TemporaryFolder folder;
+  writeMaps(folder / "a.maps", sample());
+  EXPECT_THROW(readMaps(folder / "a.maps", sample().key + 1), Error);
+  EXPECT_THROW(readMaps(folder / "missing.maps", 0), Error);
+  EXPECT_THROW(readMaps(folder.path(), 0), Error);
+}
+
+TEST(Maps, TexelsThatAreNotFiniteAreRefused) {
+  TemporaryFolder folder;
+  IlluminationMaps maps = sample();
+  maps.texels[5] = 0x7E00;
+  writeMaps(folder / "nan.maps", maps);
+  EXPECT_THROW(readMaps(folder / "nan.maps", 0), Error);
+}
+
+TEST(Maps, TexelDecodesAndClamps) {
+  const IlluminationMaps maps = sample();
+  EXPECT_EQ(maps.texel(1, 2, 0), Vec3(0.25f * 27, 0.25f * 28, 0.25f * 29));
+  EXPECT_EQ(maps.texel(0, 0, 1), Vec3(0.25f * 36, 0.25f * 37, 0.25f * 38));
+  EXPECT_EQ(maps.texel(-5, 99, 7), maps.texel(0, 2, 1));
+}
+
+Scene room() {
+  Scene scene;
+  scene.materials = {lambert(), lamp()};
+  scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(1)), 0, 0));
+  scene.objects.push_back(objectOf(boxMesh(Vec3(0, 3, 0), Vec3(1, 4, 1)), 1, 1));
+  Texture t;
+  t.image = ImageRgba8(3, 3);
+  scene.textures.push_back(t);
+  completeScene(scene, {});
+  return scene;
+}
+
+std::vector<ObjectCharts> cornerCharts(const Scene& scene) {
+  std::vector<ObjectCharts> out;
+  for (const Object& o : scene.objects) {
+    ObjectCharts c;
+    for (std::uint32_t i = 0; i < o.mesh.indices.size(); ++i) {
+      c.sourceVertex.push_back(o.mesh.indices[i]);
+      c.uv.emplace_back(static_cast<float>(i) / 100, 0.5f);
+      c.indices.push_back(i);
+    }
+    out.push_back(c);
+  }
+  return out;
+}
+
+TEST(Maps, ChartsCutTheMeshWithoutChangingTheScene) {
+  Scene scene = room();
+  const std::uint64_t key = sceneKey(scene);
+  const Mesh before = scene.objects[0].mesh;
+  applyCharts(scene, cornerCharts(scene));
+  const Mesh& after = scene.objects[0].mesh;
+  EXPECT_EQ(after.lightmapUv.size(), after.positions.size());
+  ASSERT_EQ(after.indices.size(), before.indices.size());
+  for (std::size_t i = 0; i < before.indices.size(); ++i) {
+    EXPECT_EQ(after.positions[after.indices[i]], before.positions[before.indices[i]]);
+    EXPECT_EQ(after.normals[after.indices[i]], before.normals[before.indices[i]]);
+  }
+  EXPECT_EQ(sceneKey(scene), key);
+}
+
+TEST(Maps, ChartsThatDoNotFitAreRefused) {
+  Scene scene = room();
+  auto charts = cornerCharts(scene);
+  charts[1].sourceVertex[0] = 9999;
+  EXPECT_THROW(applyCharts(scene, charts), Error);
+  charts.pop_back();
+  EXPECT_THROW(applyCharts(scene, charts), Error);
+}
+
+TEST(SceneKey, DependsOnAllThatLightDoes) {
+  const std::uint64_t key = sceneKey(room());
+  EXPECT_EQ(sceneKey(room()), key);
+  const auto differs = [&](auto&& change) {
+    Scene scene = room();
+    change(scene);
+    EXPECT_NE(sceneKey(scene), key);
+  };
+  differs([](Scene& s) { s.objects[0].mesh.positions[3].x += 1e-6f; });
+  differs([](Scene& s) { s.objects[0].mesh.normals[3] = -s.objects[0].mesh.normals[3]; });
+  differs([](Scene& s) { std::swap(s.objects[0].mesh.indices[0], s.objects[0].mesh.indices[1]); });
+  differs([](Scene& s) { s.objects[0].material = 1; });
+  differs([](Scene& s) { s.materials[0].baseColor.y = 0.5f; });
+  differs([](Scene& s) { s.materials[0].doubleSided = true; });
+  differs([](Scene& s) { s.materials[1].emission *= 2; });
+  differs([](Scene& s) { s.textures[0].image.at(2, 2).b = 1; });
+  differs([](Scene& s) { s.textures[0].srgb = true; });
+  differs([](Scene& s) { s.lights.emplace_back(); });
+  Scene moved = room();
+  moved.cameras[0].eye.x += 1;
+  moved.path = "elsewhere";
+  EXPECT_EQ(sceneKey(moved), key);
+}
+
+TEST(MapsPath, LiesInTheCacheAndTellsSettingsApart) {
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  ::setenv("XDG_CACHE_HOME", "/some/cache", 1);
+  const auto a = defaultMapsPath(1, "preview"), b = defaultMapsPath(1, "medium"),
+             c = defaultMapsPath(2, "preview");
+  EXPECT_EQ(a.parent_path(), "/some/cache/saccade");
+  EXPECT_EQ(a.extension(), ".maps");
+  EXPECT_TRUE(a != b && a != c && b != c);
+  ::unsetenv("XDG_CACHE_HOME");
+  EXPECT_NE(defaultMapsPath(1, "preview").string().find(".cache/saccade"), std::string::npos);
+  if (before) ::setenv("XDG_CACHE_HOME", kept.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace saccade::core

@@ -1,0 +1,135 @@
+// The plan says what a scene needs, and why.
+#include "core/scene/plan.h"
+
+#include <gtest/gtest.h>
+
+#include "core/scene/load.h"
+#include "core/scene/specular_albedo.h"
+#include "tests/unit/core/scene_shapes.h"
+
+namespace saccade::core {
+namespace {
+
+using namespace saccade::tests;
+
+Scene sceneOf(const std::vector<Material>& materials) {
+  Scene scene;
+  scene.materials = materials;
+  for (int i = 0; i < static_cast<int>(materials.size()); ++i) {
+    const float x = 3.0f * static_cast<float>(i);
+    scene.objects.push_back(objectOf(boxMesh(Vec3(x, 0, 0), Vec3(x + 1, 1, 1)), i, i));
+  }
+  completeScene(scene, {});
+  return scene;
+}
+
+const PlanLine& line(const Plan& plan, const std::string& stage) {
+  for (const PlanLine& l : plan.lines)
+    if (l.stage == stage) return l;
+  throw Error("no line " + stage);
+}
+
+TEST(Plan, DiffuseSceneNeedsNothingBeyondTheMaps) {
+  const Plan plan = makePlan(sceneOf({lambert(), lamp()}));
+  EXPECT_FALSE(plan.corrections || plan.glossy || plan.refraction || plan.alphaTest || plan.normalMaps ||
+               plan.doubleSided);
+  EXPECT_EQ(plan.recursionDepth, 0);
+  EXPECT_EQ(plan.diffuseEnergyLeftOut, 0);
+  EXPECT_GE(plan.lightmapSize, 128);
+  EXPECT_FALSE(line(plan, "corrections").on);
+  EXPECT_TRUE(line(plan, "light sampling").on);
+  for (const char* stage : {"medium", "volume", "motion"}) {
+    EXPECT_FALSE(line(plan, stage).on);
+    EXPECT_EQ(line(plan, stage).reason, "not in this scene");
+  }
+}
+
+TEST(Plan, RecursionFollowsFromWhatOccurs) {
+  EXPECT_EQ(makePlan(sceneOf({mirror(), lamp()})).recursionDepth, 4);
+  EXPECT_EQ(makePlan(sceneOf({clearGlass(), lamp()})).recursionDepth, 8);
+  EXPECT_EQ(makePlan(sceneOf({clearGlass(), clearGlass(), lamp()})).recursionDepth, 10);
+  EXPECT_EQ(
+      makePlan(sceneOf({clearGlass(), clearGlass(), clearGlass(), clearGlass(), lamp()})).recursionDepth, 12);
+}
+
+TEST(Plan, SeesEveryKindOfMaterial) {
+  Material rough = mirror();
+  rough.roughness = 0.4f;
+  Material cutout = lambert();
+  cutout.alphaMode = AlphaMode::mask;
+  cutout.doubleSided = true;
+  const Plan plan = makePlan(sceneOf({mirror(), rough, clearGlass(), cutout, lamp()}));
+  EXPECT_TRUE(plan.corrections && plan.glossy && plan.refraction && plan.alphaTest && plan.doubleSided);
+  EXPECT_FALSE(makePlan(sceneOf({mirror(), lamp()})).glossy);
+  EXPECT_TRUE(line(plan, "object ids").on);
+  EXPECT_NE(line(plan, "object ids").reason.find("3 ids"), std::string::npos);
+}
+
+TEST(Plan, LightmapGrowsWithSurfaceAndIsCapped) {
+  const auto sized = [](int copies) {
+    Scene scene;
+    scene.materials = {lambert(), lamp()};
+    Mesh all;
+    for (int i = 0; i < copies; ++i)
+      all = joined(std::move(all), boxMesh(Vec3(0), Vec3(1, 1 + 1e-3f * static_cast<float>(i), 1)));
+    scene.objects.push_back(objectOf(all, 0, 0));
+    scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(0.1f)), 1, 1));
+    completeScene(scene, {});
+    return makePlan(scene);
+  };
+  EXPECT_LT(sized(1).lightmapSize, sized(4).lightmapSize);
+  EXPECT_EQ(sized(60).lightmapSize, 2048);
+  EXPECT_EQ(sized(1).lightmapSize % 64, 0);
+}
+
+TEST(Plan, EnergyLeftOutIsTheAreaWeightedMean) {
+  Material plastic;
+  plastic.metallic = 0;
+  plastic.roughness = 0.6f;
+  Scene scene = sceneOf({plastic, lambert(), lamp()});  // three boxes of equal area
+  const double albedo = nonDiffuseAlbedo(scene, plastic);
+  EXPECT_GT(albedo, 0.03);
+  EXPECT_NEAR(makePlan(scene).diffuseEnergyLeftOut, albedo / 3, 1e-5);
+}
+
+TEST(NonDiffuseAlbedo, ClosedForms) {
+  const Scene scene;
+  EXPECT_EQ(nonDiffuseAlbedo(scene, lambert()), 0);
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, mirror()), 1, 1e-5f);
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, clearGlass()), 1, 1e-5f);
+  Material pane = lambert();
+  pane.alphaMode = AlphaMode::blend;
+  pane.alpha = 0.3f;
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, pane), 0.7f, 1e-6f);
+  Material plastic;
+  plastic.metallic = 0;
+  plastic.roughness = 0.5f;
+  const AlbedoPair mean = meanAlbedo(0.5f);
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, plastic), 0.04f * mean.scale + mean.bias, 1e-6f);
+  plastic.unlit = true;
+  EXPECT_EQ(nonDiffuseAlbedo(scene, plastic), 0);
+}
+
+TEST(NonDiffuseAlbedo, AveragesTexturesInLinearSpace) {
+  Scene scene;
+  Texture half;
+  half.image = ImageRgba8(2, 1);
+  half.image.at(0, 0) = {255, 0, 255, 255};  // metallic
+  half.image.at(1, 0) = {255, 0, 0, 255};    // dielectric
+  scene.textures.push_back(half);
+  Texture grey;
+  grey.image = ImageRgba8(1, 1, {188, 188, 188, 255});  // sRGB 188 is linear 0.5029
+  grey.srgb = true;
+  scene.textures.push_back(grey);
+  Material m = mirror();
+  m.specular = 0;
+  m.metallicRoughnessTexture.texture = 0;
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, m), 0.5f, 1e-5f);
+  m.metallicRoughnessTexture.texture = -1;
+  m.baseColorTexture.texture = 1;
+  const AlbedoPair e = meanAlbedo(0);
+  EXPECT_NEAR(nonDiffuseAlbedo(scene, m), 0.5029f * e.scale + e.bias, 1e-4f);
+}
+
+}  // namespace
+}  // namespace saccade::core
