@@ -7,7 +7,7 @@
 namespace saccade::data {
 namespace {
 
-constexpr float kFront = 2.6f;  // z of the wall behind the camera; the back wall stands at -1
+constexpr float kFront = 3.2f;  // z of the wall behind the camera; the back wall stands at -1
 const Vec3 kLampRadiance{17.0f, 14.4f, 10.2f};
 
 void addRoom(GlbWriter& glb) {
@@ -41,11 +41,11 @@ GlbWriter makeCornell() {
                 standing(floorPoint + Vec3(0, radius + 1e-4f, 0), 0, radius));
   };
   addSphere("mirror sphere", {-0.44f, 0, -0.42f}, 0.38f, metal("mirror", Vec3(0.95f), 0));
-  addSphere("glass sphere", {0.50f, 0, 0.52f}, 0.27f, glass("glass"));
-  addSphere("diffuse sphere", {-0.28f, 0, 0.55f}, 0.19f, lambert("ochre", {0.80f, 0.52f, 0.16f}));
+  addSphere("glass sphere", {0.50f, 0, 0.30f}, 0.28f, glass("glass"));
+  addSphere("diffuse sphere", {-0.22f, 0, 0.42f}, 0.19f, lambert("ochre", {0.80f, 0.52f, 0.16f}));
   glb.addNode("glossy box", glb.addGeometry(roundedBox(Vec3(0), {0.5f, 1.0f, 0.5f}, 0.02f, 3)),
               glb.addMaterial(metal("brushed gold", kGold, 0.25f)), standing({0.40f, 0.5001f, -0.42f}, -18));
-  glb.addCamera({"main", {0, 1, 2.5f}, {0, 0.97f, 0}, {0, 1, 0}, 50});
+  glb.addCamera({"main", {0, 1, 3.1f}, {0, 0.97f, 0}, {0, 1, 0}, 44});
   glb.addCamera({"spheres", {-0.55f, 0.75f, 1.7f}, {0.1f, 0.4f, 0.2f}, {0, 1, 0}, 50});
   return glb;
 }

@@ -10,7 +10,7 @@ namespace saccade::data {
 inline constexpr float kHallHalfWidth = 5;
 inline constexpr float kHallHalfLength = 12;
 inline constexpr float kHallHeight = 5;
-inline constexpr float kAisleHalfWidth = 2;
+inline constexpr float kAisleHalfWidth = 1.15f;
 inline constexpr float kColonnadeX = 3.15f;
 
 /// Floor, walls, ceiling with light panels, colonnades.

@@ -118,8 +118,8 @@ struct Shapes {
 
 Shapes makeShapes(GlbWriter& glb) {
   Shapes s{};
-  s.knot = glb.addGeometry(torusKnot(2, 3, 176, 18));
-  s.cinquefoil = glb.addGeometry(torusKnot(2, 5, 224, 16));
+  s.knot = glb.addGeometry(torusKnot(2, 3, 120, 12));
+  s.cinquefoil = glb.addGeometry(torusKnot(2, 5, 168, 10));
   s.ring = glb.addGeometry(twistedRing());
   s.tower = glb.addGeometry(twistedTower());
   s.flame = glb.addGeometry(flame());
@@ -128,11 +128,12 @@ Shapes makeShapes(GlbWriter& glb) {
   s.beads = glb.addGeometry(beadTower());
   s.crown = glb.addGeometry(crown());
   s.bust = glb.addGeometry(bust(), true, true);
-  s.ball = glb.addGeometry(lathe(sphereProfile(1, 32), 48), true, true);
+  s.ball = glb.addGeometry(lathe(sphereProfile(1, 28), 44));
   s.stone = glb.addGeometry(cutStone(0.18f, 0.26f, 12));
-  for (int k = 0; k < 4; ++k) s.vases[static_cast<std::size_t>(k)] = glb.addGeometry(vase(k, 48), true, true);
-  s.plinth = glb.addGeometry(roundedBox({0, 0.5f, 0}, {0.52f, 1.0f, 0.52f}, 0.012f, 2, 1), true);
-  s.pedestal = glb.addGeometry(roundedBox({0, 0.45f, 0}, {0.74f, 0.9f, 0.74f}, 0.012f, 2, 1), true);
+  for (int k = 0; k < 4; ++k)
+    s.vases[static_cast<std::size_t>(k)] = glb.addGeometry(vase(k, 32), true, k == 1);
+  s.plinth = glb.addGeometry(roundedBox({0, 0.5f, 0}, {0.52f, 1.0f, 0.52f}, 0.012f, 1, 1), true);
+  s.pedestal = glb.addGeometry(roundedBox({0, 0.45f, 0}, {0.74f, 0.9f, 0.74f}, 0.012f, 1, 1), true);
   return s;
 }
 
@@ -146,26 +147,26 @@ constexpr float kHover = 1e-3f;  // air under whatever stands
 
 /// Sculptures on plinths along the colonnades and in the corners.
 void addSculptures(GlbWriter& glb, const Palette& p, const Shapes& s) {
-  const float c = kColonnadeX;
+  const float inner = 2.15f, outer = kColonnadeX;
   const std::array<Exhibit, 20> exhibits{{
-      {"knot in gold", s.knot, p.gold, 2, -2.35f, 7.2f, 25, 0.95f},
-      {"silver flame", s.flame, p.silver, 0, 2.45f, 6.9f, 10, 0.85f},
-      {"blue and white vase", s.vases[0], p.glazes[0], 1, -c, 10.6f, 0, 0.9f},
-      {"hammered bowl", s.vases[1], p.hammered, 0, c, 10.6f, 0, 1.0f},
-      {"bronze head", s.bust, p.bronze, 2, -c, 4.9f, 90, 0.9f},
-      {"twisted ring", s.ring, p.copper, 2, c, 4.9f, -55, 0.95f},
-      {"starfruit", s.starfruit, p.rippled, 0, -2.35f, 1.6f, 0, 0.85f},
-      {"crystal ball", s.ball, p.crystal, 2, 2.45f, 1.6f, 0, 0.24f},
-      {"twisted tower", s.tower, p.steel, 1, -c, -1.1f, 20, 1.0f},
-      {"seashell", s.shell, p.gold, 0, c, -1.1f, 40, 0.95f},
-      {"lattice vase", s.vases[2], p.glazes[3], 2, -2.4f, -4.6f, 0, 0.9f},
-      {"cinquefoil", s.cinquefoil, p.silver, 1, 2.4f, -4.6f, 0, 0.95f},
-      {"copper beads", s.beads, p.copper, 0, -c, -7.1f, 0, 0.75f},
-      {"second head", s.bust, p.hammered, 2, c, -7.1f, 0, 0.9f},
-      {"goblet", s.vases[3], p.gold, 0, -c, -10.8f, 0, 1.0f},
-      {"scaled vase", s.vases[0], p.glazes[5], 0, c, -10.8f, 0, 0.95f},
-      {"crystal knot", s.knot, p.crystal, 2, -2.4f, -8.4f, 35, 0.8f},
-      {"steel ring", s.ring, p.steel, 2, 2.4f, -8.4f, 35, 0.95f},
+      {"knot in gold", s.knot, p.gold, 2, -inner, 7.7f, 25, 0.95f},
+      {"silver flame", s.flame, p.silver, 0, inner, 7.0f, 10, 0.85f},
+      {"starfruit", s.starfruit, p.rippled, 0, -inner, 4.9f, 0, 0.85f},
+      {"crystal ball", s.ball, p.crystal, 2, inner, 4.5f, 0, 0.24f},
+      {"lattice vase", s.vases[2], p.glazes[3], 2, -inner, -2.6f, 0, 0.9f},
+      {"cinquefoil", s.cinquefoil, p.silver, 1, inner, -3.4f, 0, 0.95f},
+      {"crystal knot", s.knot, p.crystal, 2, -inner, -5.8f, 35, 0.8f},
+      {"steel ring", s.ring, p.steel, 2, inner, -6.6f, 35, 0.95f},
+      {"blue and white vase", s.vases[0], p.glazes[0], 1, -outer, 10.7f, 0, 0.9f},
+      {"hammered bowl", s.vases[1], p.hammered, 0, outer, 10.7f, 0, 1.0f},
+      {"bronze head", s.bust, p.bronze, 2, -outer, 4.4f, 90, 0.9f},
+      {"twisted ring", s.ring, p.copper, 2, outer, 4.6f, -55, 0.95f},
+      {"twisted tower", s.tower, p.steel, 1, -outer, -1.5f, 20, 1.0f},
+      {"seashell", s.shell, p.gold, 0, outer, -1.5f, 40, 0.95f},
+      {"copper beads", s.beads, p.copper, 0, -outer, -7.4f, 0, 0.75f},
+      {"second head", s.bust, p.hammered, 2, outer, -7.4f, 0, 0.9f},
+      {"goblet", s.vases[3], p.gold, 0, -outer, -10.8f, 0, 1.0f},
+      {"scaled vase", s.vases[0], p.glazes[5], 0, outer, -10.8f, 0, 0.95f},
       {"dotted vase", s.vases[2], p.glazes[2], 1, -4.3f, 11.2f, 0, 0.95f},
       {"banded bowl", s.vases[1], p.glazes[4], 1, 4.3f, 11.2f, 0, 1.0f},
   }};
@@ -197,8 +198,7 @@ void addVitrines(GlbWriter& glb, const Palette& p, const Shapes& s) {
                                            {"gold star", s.starfruit, p.gold, 0.5f}}};
   for (std::size_t k = 0; k < treasures.size(); ++k) {
     const Treasure& t = treasures[k];
-    const float x = k % 2 == 0 ? -kColonnadeX : kColonnadeX,
-                z = 7.0f - 6.0f * static_cast<float>(k / 2) - (k / 2 == 0 ? 0.f : 0.4f);
+    const float x = k % 2 == 0 ? -kColonnadeX : kColonnadeX, z = 6.2f - 6.0f * static_cast<float>(k / 2);
     const std::string name = t.name;
     glb.addNode(name + " pedestal", s.pedestal, p.plinths[k % 2 == 0 ? 1 : 0], standing({x, kHover, z}));
     glb.addNode(name + " rim", rim, brass, standing({x, 0.9f + 2 * kHover, z}));
@@ -209,14 +209,14 @@ void addVitrines(GlbWriter& glb, const Palette& p, const Shapes& s) {
 
 void addCentrepiece(GlbWriter& glb, const Palette& p) {
   const int base = glb.addGeometry(
-      lathe(roundedProfile({{{0, 0}, 0}, {{1.25f, 0}, 0}, {{1.25f, 0.22f}, 0.03f}, {{0, 0.22f}, 0}}, 4), 96),
+      lathe(roundedProfile({{{0, 0}, 0}, {{1.25f, 0}, 0}, {{1.25f, 0.22f}, 0.03f}, {{0, 0.22f}, 0}}, 3), 64),
       true);
-  glb.addNode("centrepiece base", base, p.plinths[1], standing({0, kHover, -2.2f}));
+  glb.addNode("centrepiece base", base, p.plinths[0], standing({0, kHover, 1.2f}));
   glb.addNode("centrepiece", glb.addGeometry(bean()), p.steel,
-              standing({0, 0.22f + 2 * kHover, -2.2f}, 14, 1.12f));
-  glb.addNode("tall flame", glb.addGeometry(flame()), p.gold, standing({0, 0.22f + kHover, -7.6f}, 60, 1.9f));
+              standing({0, 0.22f + 2 * kHover, 1.2f}, 14, 1.12f));
+  glb.addNode("tall flame", glb.addGeometry(flame()), p.gold, standing({0, 0.22f + kHover, -8.2f}, 60, 1.9f));
   glb.addNode("tall flame base", glb.addGeometry(box({0, 0.11f, 0}, {0.7f, 0.22f, 0.7f}, 1), true),
-              p.plinths[2], standing({0, kHover / 2, -7.6f}));
+              p.plinths[2], standing({0, kHover / 2, -8.2f}));
 }
 
 void addBenches(GlbWriter& glb) {
@@ -233,7 +233,7 @@ void addBenches(GlbWriter& glb) {
                               glb.addJpeg("walnut",
                                           paint(128, 96,
                                                 [](Vec2 uv) {
-                                                  return boardColor(uv, 3, {.34f, .22f, .15f}, 98);
+                                                  return boardColor(uv, {3, 1}, {.34f, .22f, .15f}, 98);
                                                 }),
                                           80)));
   const int seat =
@@ -243,9 +243,10 @@ void addBenches(GlbWriter& glb) {
     rack.append(
         box({k % 2 == 0 ? -0.19f : 0.19f, 0.165f, k / 2 == 0 ? -0.76f : 0.76f}, {0.06f, 0.33f, 0.06f}, 0.6f));
   const int frameShape = glb.addGeometry(rack, true);
-  for (const float z : {3.4f, -5.3f}) {
-    glb.addNode("bench seat", seat, cushion, standing({0, 0, z}));
-    glb.addNode("bench frame", frameShape, walnut, standing({0, kHover, z}));
+  const std::array<Vec3, 3> places{{{0, 0, -4.6f}, {-4.0f, 0, 2.2f}, {4.0f, 0, -4.4f}}};
+  for (const Vec3& place : places) {
+    glb.addNode("bench seat", seat, cushion, standing(place));
+    glb.addNode("bench frame", frameShape, walnut, standing(place + Vec3(0, kHover, 0)));
   }
 }
 
@@ -265,8 +266,8 @@ void addStanchions(GlbWriter& glb) {
                                                         {0.05f, 0.96f},
                                                         {0.035f, 1.0f},
                                                         {0, 1.01f}},
-                                                       3),
-                                         28));
+                                                       2),
+                                         16));
   constexpr double kSpan = 1.1;
   const int rope = glb.addGeometry(
       tube([](double t) { return glm::dvec3(kSpan * (t - 0.5), 0.90 - 0.22 * 4 * t * (1 - t), 0); },

@@ -30,7 +30,7 @@ void addAisle(GlbWriter& glb) {
   constexpr int kSlabs = 8;
   const float length = 2 * kL / kSlabs, strip = 0.07f, half = kAisleHalfWidth - strip;
   const int slab =
-      glb.addGeometry(panel({-half, 0, length / 2}, {2 * half, 0, 0}, {0, 0, -length}, {1.3f, 1}), true);
+      glb.addGeometry(panel({-half, 0, length / 2}, {2 * half, 0, 0}, {0, 0, -length}, {1, 1.3f}), true);
   for (int k = 0; k < kSlabs; ++k)
     glb.addNode("aisle slab", slab, k % 2 == 0 ? black : green,
                 standing({0, 0, kL - (static_cast<float>(k) + 0.5f) * length}));
@@ -45,15 +45,15 @@ void addParquet(GlbWriter& glb) {
   MaterialDesc parquet;  // oiled wood: a 4 % lobe, rough, below the threshold
   parquet.name = "parquet";
   parquet.baseColorTexture =
-      glb.addJpeg("parquet", paint(384, 384, [&](Vec2 uv) { return boardColor(uv, 12, tone, 31); }), 82);
+      glb.addJpeg("parquet", paint(384, 384, [&](Vec2 uv) { return boardColor(uv, {12}, tone, 31); }), 82);
   parquet.normalTexture =
       glb.addPng("parquet relief", normalMap(
-                                       128, [](Vec2 uv) { return boardHeight(uv, 12, 31); }, 0.006f));
-  parquet.metallicRoughnessTexture =
-      glb.addJpeg("parquet roughness",
-                  metallicRoughnessMap(
-                      128, 0, [&](Vec2 uv) { return 0.78f - 0.5f * boardColor(uv, 12, tone, 31).x * 0.6f; }),
-                  80);
+                                       128, [](Vec2 uv) { return boardHeight(uv, {12}, 31); }, 0.006f));
+  parquet.metallicRoughnessTexture = glb.addJpeg(
+      "parquet roughness",
+      metallicRoughnessMap(128, 0,
+                           [&](Vec2 uv) { return 0.78f - 0.5f * boardColor(uv, {12}, tone, 31).x * 0.6f; }),
+      80);
   const float width = kW - kAisleHalfWidth;
   const int side = glb.addGeometry(
       panel({-width / 2, 0, kL}, {width, 0, 0}, {0, 0, -2 * kL}, {width / 1.8f, 2 * kL / 1.8f}), true, true);

@@ -52,7 +52,7 @@ constexpr float kFrameDepth = 0.06f;
 Hanger::Hanger(GlbWriter& glb) : glb_(glb) {
   for (std::size_t f = 0; f < kFormats; ++f) {
     const FormatSize& s = kSizes[f];
-    frames_[f] = glb.addGeometry(frame(s.width, s.height, s.border, kFrameDepth, 14), true, true);
+    frames_[f] = glb.addGeometry(frame(s.width, s.height, s.border, kFrameDepth, 9), true, true);
     canvases_[f] = glb.addGeometry(
         panel({-s.width / 2, -s.height / 2, 0.015f}, {s.width, 0, 0}, {0, s.height, 0}), f != kMirror);
   }
@@ -152,7 +152,7 @@ void addDoor(GlbWriter& glb) {
               glb.addJpeg("door oak",
                           paint(128, 192,
                                 [](Vec2 uv) {
-                                  return boardColor(Vec2(uv.y, uv.x) * 0.5f, 8, {.36f, .24f, .15f}, 81);
+                                  return boardColor(Vec2(uv.y, uv.x) * 0.5f, {8}, {.36f, .24f, .15f}, 81);
                                 }),
                           80));
   oak.normalTexture =

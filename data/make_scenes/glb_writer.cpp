@@ -87,6 +87,8 @@ int GlbWriter::addMaterial(const MaterialDesc& m) {
   for (const auto& item : extensions.items()) extensionsUsed_[item.key()] = true;
   if (!extensions.empty()) material["extensions"] = extensions;
   root_["materials"].push_back(material);
+  isBumpy_.push_back(m.normalTexture >= 0);
+  isTextured_.push_back(std::max({m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture}) >= 0);
   return static_cast<int>(root_["materials"].size()) - 1;
 }
 
@@ -141,6 +143,8 @@ void GlbWriter::addNode(const std::string& name, int geometry, int material, con
   if (isNew) {
     json primitive = primitives_[static_cast<std::size_t>(geometry)];
     primitive["material"] = material;
+    if (!isTextured_[static_cast<std::size_t>(material)]) primitive["attributes"].erase("TEXCOORD_0");
+    if (!isBumpy_[static_cast<std::size_t>(material)]) primitive["attributes"].erase("TANGENT");
     meshes.push_back({{"primitives", json::array({primitive})}});
   }
   json node = {{"name", name}, {"mesh", entry->second}};

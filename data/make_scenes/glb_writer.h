@@ -47,7 +47,7 @@ class GlbWriter {
   int addPng(const std::string& name, const core::ImageRgba8& image);
   int addMaterial(const MaterialDesc& material);
   /// Vertices are stored once and may be drawn with several materials. `textured` keeps the uvs, `bumpy` adds
-  /// tangents for a normal map.
+  /// tangents for a normal map; a material that needs neither is not given them.
   int addGeometry(const MeshData& mesh, bool textured = false, bool bumpy = false);
   /// A node in the scene's root.
   void addNode(const std::string& name, int geometry, int material, const Placement& placement = {});
@@ -73,6 +73,7 @@ class GlbWriter {
   Stream streams_[kStreamKinds]{{{}, 12, 34962}, {{}, 12, 34962}, {{}, 8, 34962},
                                 {{}, 16, 34962}, {{}, 0, 34963},  {{}, 0, 34963}};
   std::vector<std::vector<std::uint8_t>> imageFiles_;
+  std::vector<bool> isTextured_, isBumpy_;     ///< by material
   std::vector<nlohmann::json> primitives_;     ///< by geometry, without material
   std::map<std::pair<int, int>, int> meshes_;  ///< (geometry, material) -> mesh
   std::map<std::string, bool> extensionsUsed_;

@@ -16,15 +16,15 @@ int main(int argc, char** argv) {
   std::filesystem::path out = "data";
   int objects = 0;
   app.add_option("--out", out, "folder that holds scenes/ and paths/");
-  CLI::Option* cabinet =
+  CLI::Option* tribune =
       app.add_option("--objects", objects, "write gallery-N.glb with N small objects instead");
   CLI11_PARSE(app, argc, argv);
   try {
     std::filesystem::create_directories(out / "scenes");
     std::filesystem::create_directories(out / "paths");
-    if (*cabinet) {
+    if (*tribune) {
       saccade::core::writeFileAtomically(out / "scenes" / ("gallery-" + std::to_string(objects) + ".glb"),
-                                         data::makeCabinet(objects).bytes());
+                                         data::makeTribune(objects).bytes());
       return 0;
     }
     saccade::core::writeFileAtomically(out / "scenes" / "cornell.glb", data::makeCornell().bytes());

@@ -40,7 +40,7 @@ CameraPath cornellPath() {
   return sampled(8, [](float t) {
     const float swing = std::sin(2 * core::kPi * t), near = 0.5f - 0.5f * std::cos(2 * core::kPi * t);
     return core::Camera{"",
-                        {0.62f * swing, 1 - 0.3f * near, 2.4f - 0.75f * near},
+                        {0.62f * swing, 1 - 0.3f * near, 2.9f - 1.1f * near},
                         {0.05f, 0.9f - 0.35f * near, 0},
                         {0, 1, 0},
                         50};
@@ -61,12 +61,12 @@ CameraPath tablePath() {
 }
 
 CameraPath galleryPath() {
-  const std::vector<Vec3> eyes{{0.55f, 1.6f, 11.2f}, {0.3f, 1.6f, 9.4f},   {-0.6f, 1.6f, 7.4f},
-                               {-1.1f, 1.6f, 5.4f},  {-0.9f, 1.6f, 3.4f},  {0.4f, 1.6f, 1.3f},
-                               {1.55f, 1.6f, -0.7f}, {1.65f, 1.6f, -2.8f}, {1.2f, 1.6f, -4.6f}};
-  const std::vector<Vec3> targets{{-0.15f, 1.6f, 0},   {-0.8f, 1.5f, 2},    {-3.2f, 1.4f, 4.0f},
-                                  {-3.4f, 1.4f, 1.6f}, {0.2f, 1.2f, -2.2f}, {0.2f, 1.2f, -4},
-                                  {0.6f, 1.3f, -7},    {0.9f, 1.5f, -11},   {0.0f, 1.7f, -12}};
+  const std::vector<Vec3> eyes{{0.35f, 1.6f, 10.6f}, {0.2f, 1.6f, 9.0f},   {-0.5f, 1.6f, 7.2f},
+                               {-0.9f, 1.6f, 5.6f},  {-0.9f, 1.6f, 4.2f},  {-1.5f, 1.6f, 2.6f},
+                               {-1.75f, 1.6f, 0.9f}, {-1.3f, 1.6f, -0.8f}, {-0.9f, 1.6f, -2.3f}};
+  const std::vector<Vec3> targets{{-0.1f, 1.25f, 0},   {-0.5f, 1.3f, 1.5f}, {-1.6f, 1.3f, 3.6f},
+                                  {-1.0f, 1.1f, 1.2f}, {0.4f, 1.0f, 0.8f},  {0.5f, 1.1f, -1.6f},
+                                  {0.3f, 1.2f, -4.0f}, {0.6f, 1.3f, -6.5f}, {0.1f, 1.5f, -9.0f}};
   return sampled(12, [&](float t) {
     return core::Camera{"", along(eyes, t), along(targets, t), {0, 1, 0}, 60};
   });

@@ -49,9 +49,17 @@ Profile splineProfile(const std::vector<Vec2>& points, int steps) {
   Profile profile;
   const auto count = static_cast<int>(points.size());
   const auto at = [&](int i) { return points[static_cast<std::size_t>(std::clamp(i, 0, count - 1))]; };
+  // Centripetal knots keep the curve free of loops where points lie at uneven distances.
+  const auto knot = [&](int i) { return std::sqrt(std::max(1e-6f, glm::distance(at(i), at(i + 1)))); };
+  const auto slope = [&](int i) {
+    const float before = knot(i - 1), after = knot(i);
+    return (at(i) - at(i - 1)) / before - (at(i + 1) - at(i - 1)) / (before + after) +
+           (at(i + 1) - at(i)) / after;
+  };
   for (int i = 0; i + 1 < count; ++i) {
     const Vec2 p0 = at(i), p1 = at(i + 1);
-    const Vec2 m0 = 0.5f * (p1 - at(i - 1)), m1 = 0.5f * (at(i + 2) - p0);
+    const Vec2 m0 = i == 0 ? p1 - p0 : knot(i) * slope(i),
+               m1 = i + 2 == count ? p1 - p0 : knot(i) * slope(i + 1);
     for (int k = i == 0 ? 0 : 1; k <= steps; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(steps), t2 = t * t, t3 = t2 * t;
       const Vec2 p =

@@ -24,7 +24,7 @@ struct Corner {
 /// Straight lines with rounded corners; `arcSteps` segments a corner; exact normals.
 Profile roundedProfile(const std::vector<Corner>& corners, int arcSteps);
 
-/// Catmull-Rom spline through `points`, `steps` segments between neighbours.
+/// Centripetal Catmull-Rom spline through `points`, `steps` segments between neighbours.
 Profile splineProfile(const std::vector<Vec2>& points, int steps);
 
 /// Half circle around the origin from the lower to the upper pole.

@@ -12,8 +12,9 @@ namespace saccade::data {
 GlbWriter makeCornell();
 GlbWriter makeTable();
 GlbWriter makeGallery();
-/// The gallery's hall with a cabinet of `objects` small non-diffuse things, each visible from the camera.
-GlbWriter makeCabinet(int objects);
+/// The hall with a tribune of `objects` small non-diffuse things, each visible from the camera.
+/// Throws core::UsageError outside [1, 4000].
+GlbWriter makeTribune(int objects);
 
 /// A camera on its way; `seconds` rise from key to key.
 struct PathKey {

@@ -57,7 +57,7 @@ MeshData torusKnot(int windings, int turns, int lengthSteps, int aroundSteps) {
 }
 
 MeshData twistedRing() {
-  return grounded(parametric({28, 96, true, true}, [](double u, double v) {
+  return grounded(parametric({16, 72, true, true}, [](double u, double v) {
     const double a = kTau * v;
     const dvec3 out(std::cos(a), std::sin(a), 0), tangent(-out.y, out.x, 0);
     const dvec2 flat = superCircle(u, 4) * dvec2(0.035, 0.17);
@@ -68,7 +68,7 @@ MeshData twistedRing() {
 }
 
 MeshData twistedTower() {
-  return grounded(parametric({40, 64, true, false}, [](double u, double v) {
+  return grounded(parametric({28, 34, true, false}, [](double u, double v) {
     const double ends = std::min(1.0, std::min(v, 1 - v) / 0.03);
     const double close = v <= 0 || v >= 1 ? 0 : std::sqrt(ends * (2 - ends));
     const double radius = close * (0.19 - 0.09 * v + 0.02 * std::sin(3 * kTau * v));
@@ -80,7 +80,7 @@ MeshData twistedTower() {
 }
 
 MeshData flame() {
-  return grounded(parametric({32, 64, true, false}, [](double u, double v) {
+  return grounded(parametric({24, 36, true, false}, [](double u, double v) {
     const double body = std::pow(std::sin(kTau / 2 * std::pow(v, 0.62)), 0.9) * (1 - 0.35 * v);
     const double radius = v <= 0 || v >= 1 ? 0 : 0.13 * body + 0.03 * (1 - v) * std::min(1.0, 30 * v);
     const dvec3 p = polar(radius, 1.35 * v, u);
@@ -89,7 +89,7 @@ MeshData flame() {
 }
 
 MeshData bean() {
-  return grounded(parametric({96, 64, true, false}, [](double u, double v) {
+  return grounded(parametric({72, 40, true, false}, [](double u, double v) {
     const double latitude = kTau / 2 * (v - 0.5);
     const double pole = v <= 0 || v >= 1 ? 0 : std::cos(latitude);
     const dvec3 p = polar(pole, std::sin(latitude), u);
@@ -99,7 +99,7 @@ MeshData bean() {
 }
 
 MeshData starfruit() {
-  return grounded(parametric({100, 48, true, false}, [](double u, double v) {
+  return grounded(parametric({60, 26, true, false}, [](double u, double v) {
     const double latitude = kTau / 2 * (v - 0.5), c = v <= 0 || v >= 1 ? 0 : std::cos(latitude);
     const double radius = 0.36 * (1 + 0.16 * std::cos(5 * kTau * u + 2.2 * latitude) * c * c);
     return polar(radius * c, 0.40 * std::sin(latitude), u);
@@ -107,7 +107,7 @@ MeshData starfruit() {
 }
 
 MeshData seashell() {
-  return grounded(parametric({28, 140, true, false}, [](double u, double v) {
+  return grounded(parametric({14, 96, true, false}, [](double u, double v) {
     const double turns = 3.2 * kTau * v, growth = std::exp(-1.9 * v);
     const double end = std::min(1.0, std::min(v, 1 - v) / 0.025);
     const double radius = v <= 0 || v >= 1 ? 0 : 0.17 * growth * std::sqrt(end * (2 - end));
@@ -122,7 +122,7 @@ MeshData beadTower() {
   float y = 0;
   for (const float radius : {0.24f, 0.19f, 0.15f, 0.115f, 0.085f}) {
     y += radius;
-    tower.append(lathe(sphereProfile(radius, 20), 36), glm::translate(Mat4(1), Vec3(0, y, 0)));
+    tower.append(lathe(sphereProfile(radius, 14), 24), glm::translate(Mat4(1), Vec3(0, y, 0)));
     y += radius * 0.97f;
   }
   return tower;
@@ -137,13 +137,13 @@ MeshData crown() {
                                        {0.32f, 0.265f},
                                        {0.265f, 0.13f},
                                        {0.26f, 0.02f}},
-                                      4),
-                        64);
+                                      3),
+                        40);
   constexpr int kBalls = 10;
   for (int k = 0; k < kBalls; ++k) {
     const float angle = 2 * core::kPi * static_cast<float>(k) / kBalls;
     const Vec3 at(0.325f * std::cos(angle), k % 2 == 0 ? 0.30f : 0.285f, 0.325f * std::sin(angle));
-    mesh.append(lathe(sphereProfile(k % 2 == 0 ? 0.045f : 0.03f, 12), 18), glm::translate(Mat4(1), at));
+    mesh.append(lathe(sphereProfile(k % 2 == 0 ? 0.045f : 0.03f, 8), 12), glm::translate(Mat4(1), at));
   }
   return mesh;
 }
@@ -162,8 +162,8 @@ MeshData bust() {
                               {0.155f, 0.74f},
                               {0.12f, 0.86f},
                               {0, 0.91f}},
-                             5),
-               48);
+                             3),
+               30);
 }
 
 MeshData vase(int shape, int slices) {
@@ -224,13 +224,13 @@ MeshData vase(int shape, int slices) {
        {0.185f, 0.375f},
        {0, 0.31f}},
   }};
-  return lathe(splineProfile(kShapes[static_cast<std::size_t>(shape)], 4), slices);
+  return lathe(splineProfile(kShapes[static_cast<std::size_t>(shape)], 2), slices);
 }
 
 MeshData column(float height, float radius) {
   constexpr int kFlutes = 20;
   const double r = radius, base = 1.3 * r, capital = 1.2 * r, top = height - capital;
-  MeshData mesh = parametric({kFlutes * 4, 10, true, false}, [&](double u, double v) {
+  MeshData mesh = parametric({kFlutes * 3, 4, true, false}, [&](double u, double v) {
     const double taper = 1 - 0.13 * v * v,
                  flute = 0.055 * std::pow(std::abs(std::sin(kTau / 2 * kFlutes * u)), 0.8);
     return polar(r * taper * (1 - flute), base + (top - base) * v, u);
@@ -245,7 +245,7 @@ MeshData column(float height, float radius) {
                                        {{f(1.22), f(1.22)}, f(0.1)},
                                        {{f(1.0), f(1.22)}, 0},
                                        {{f(0.96), f(1.34)}, 0}},
-                                      5);
+                                      3);
   const Profile head = splineProfile({{f(0.84), h - f(1.25)},
                                       {f(0.92), h - f(1.2)},
                                       {f(0.94), h - f(1.08)},
@@ -253,9 +253,9 @@ MeshData column(float height, float radius) {
                                       {f(0.9), h - f(0.75)},
                                       {f(1.15), h - f(0.42)},
                                       {f(1.3), h - f(0.34)}},
-                                     5);
-  mesh.append(lathe(foot, 48));
-  mesh.append(lathe(head, 48));
+                                     2);
+  mesh.append(lathe(foot, 24));
+  mesh.append(lathe(head, 24));
   mesh.append(box({0, f(0.2), 0}, {f(3), f(0.4), f(3)}, 0.5f));
   mesh.append(box({0, h - f(0.17), 0}, {f(2.8), f(0.34), f(2.8)}, 0.5f));
   return mesh;

@@ -18,7 +18,7 @@ void addRoom(GlbWriter& glb) {
   const int boards = glb.addJpeg("floor boards",
                                  paint(256, 256,
                                        [](Vec2 uv) {
-                                         return boardColor(uv, 6, {0.42f, 0.31f, 0.22f}, 21);
+                                         return boardColor(uv, {6}, {0.42f, 0.31f, 0.22f}, 21);
                                        }),
                                  80);
   const int plaster = glb.addMaterial(lambert("plaster", {0.70f, 0.66f, 0.58f}));
@@ -54,9 +54,9 @@ void addLights(GlbWriter& glb) {
 
 void addTable(GlbWriter& glb) {
   const int wood = glb.addJpeg("oak",
-                               paint(512, 512,
+                               paint(768, 768,
                                      [](Vec2 uv) {
-                                       return boardColor(uv, 5, {0.63f, 0.43f, 0.25f}, 5);
+                                       return boardColor(uv, {9, 0, 0.72f}, {0.63f, 0.43f, 0.25f}, 5);
                                      }),
                                84);
   // Varnished: a dielectric lobe of 4 %, below the threshold, so the table stays in the base layer.
@@ -67,9 +67,9 @@ void addTable(GlbWriter& glb) {
   const int oak = glb.addMaterial(varnished);
   glb.addNode(
       "table top",
-      glb.addGeometry(roundedBox({0, kTableTop - 0.02f, 0}, {1.5f, 0.04f, 0.9f}, 0.008f, 3, 0.9f), true),
+      glb.addGeometry(roundedBox({0, kTableTop - 0.02f, 0}, {1.5f, 0.04f, 0.9f}, 0.008f, 3, 1.6f), true),
       oak);
-  const int leg = glb.addGeometry(roundedBox({0, 0.355f, 0}, {0.07f, 0.71f, 0.07f}, 0.006f, 2, 0.9f), true);
+  const int leg = glb.addGeometry(roundedBox({0, 0.355f, 0}, {0.07f, 0.71f, 0.07f}, 0.006f, 2, 1.6f), true);
   for (int k = 0; k < 4; ++k)
     glb.addNode("table leg", leg, oak,
                 standing({k % 2 == 0 ? -0.66f : 0.66f, 0, k / 2 == 0 ? -0.36f : 0.36f}));

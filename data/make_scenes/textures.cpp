@@ -1,5 +1,6 @@
 #include "data/make_scenes/textures.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "data/make_scenes/noise.h"
@@ -21,14 +22,15 @@ struct Board {
   std::uint32_t id = 0;
   Vec2 at{0};
 };
-Board boardAt(Vec2 uv, int boards, std::uint32_t seed) {
-  constexpr float kEndsPerImage = 2;
-  const float row = std::floor(uv.y * static_cast<float>(boards));
+Board boardAt(Vec2 uv, const Boards& layout, std::uint32_t seed) {
+  const float row = std::floor(uv.y * static_cast<float>(layout.rows));
   const auto rowId = static_cast<std::uint32_t>(row);
-  const float along = uv.x * kEndsPerImage + hash01(rowId, seed, 11) * kEndsPerImage;
-  const float piece = std::floor(along);
-  const auto pieceId = static_cast<std::uint32_t>(piece) % static_cast<std::uint32_t>(kEndsPerImage);
-  return {rowId * 7919U + pieceId, {along - piece, uv.y * static_cast<float>(boards) - row}};
+  const float onRow = uv.y * static_cast<float>(layout.rows) - row;
+  if (layout.pieces == 0) return {rowId, {uv.x, onRow}};
+  const auto pieces = static_cast<float>(layout.pieces);
+  const float along = uv.x * pieces + hash01(rowId, seed, 11) * pieces, piece = std::floor(along);
+  const auto pieceId = static_cast<std::uint32_t>(piece) % static_cast<std::uint32_t>(layout.pieces);
+  return {rowId * 7919U + pieceId, {along - piece, onRow}};
 }
 
 }  // namespace
@@ -68,8 +70,8 @@ ImageRgba8 metallicRoughnessMap(int size, float metallic, const HeightFunction& 
   return paint(size, size, [&](Vec2 uv) { return Vec3(0, roughness(uv), metallic); });
 }
 
-Vec3 boardColor(Vec2 uv, int boards, const Vec3& tone, std::uint32_t seed) {
-  const Board board = boardAt(uv, boards, seed);
+Vec3 boardColor(Vec2 uv, const Boards& layout, const Vec3& tone, std::uint32_t seed) {
+  const Board board = boardAt(uv, layout, seed);
   const float shade = 0.82f + 0.36f * hash01(board.id, seed, 1);
   const float warmth = 0.06f * (hash01(board.id, seed, 2) - 0.5f);
   // Rings cut lengthwise: noise stretched along the board, shifted from board to board.
@@ -78,14 +80,16 @@ Vec3 boardColor(Vec2 uv, int boards, const Vec3& tone, std::uint32_t seed) {
   const float rings = std::sin(20 * fbm(grainAt * Vec2(0.5f, 0.6f), 3, 0, seed + 5));
   const float fibres = fbm(grainAt * Vec2(4, 14), 3, 0, seed + 9);
   const float grain = 1 + 0.09f * rings + 0.22f * (fibres - 0.5f);
-  const float joint = boardHeight(uv, boards, seed) < 0.5f ? 0.55f : 1.f;
+  const float joint = glm::mix(layout.joint, 1.f, glm::smoothstep(0.2f, 0.8f, boardHeight(uv, layout, seed)));
   return tone * (shade * grain * joint) + Vec3(warmth, 0, -warmth);
 }
 
-float boardHeight(Vec2 uv, int boards, std::uint32_t seed) {
-  const Board board = boardAt(uv, boards, seed);
-  const float edge = std::min({board.at.y * 8, (1 - board.at.y) * 8, board.at.x * 60, (1 - board.at.x) * 60});
-  const float fibres = fbm(Vec2(uv.x * 8, uv.y * 128), 2, 0, seed + 9);
+float boardHeight(Vec2 uv, const Boards& layout, std::uint32_t seed) {
+  const Board board = boardAt(uv, layout, seed);
+  const float across = std::min(board.at.y, 1 - board.at.y) * 8,
+              end = std::min(board.at.x, 1 - board.at.x) * 60;
+  const float edge = layout.pieces == 0 ? across : std::min(across, end);
+  const float fibres = fbm(Vec2(uv.x * 8, uv.y * 128), 2, 8, seed + 9);
   return glm::smoothstep(0.f, 0.35f, edge) * (0.92f + 0.08f * fibres);
 }
 

@@ -1,5 +1,5 @@
-// Procedural surfaces. Colours are sRGB display values in [0, 1]; uv in [0, 1)^2, v downwards; every pattern
-// repeats seamlessly.
+// Procedural surfaces. Colours are sRGB display values in [0, 1]; uv in [0, 1)^2, v downwards; patterns
+// repeat seamlessly unless they say otherwise.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,16 @@ core::ImageRgba8 normalMap(int size, const HeightFunction& height, float strengt
 /// G = roughness from the function, B = `metallic`.
 core::ImageRgba8 metallicRoughnessMap(int size, float metallic, const HeightFunction& roughness);
 
-/// Long boards along u, `boards` of them across v, cut at staggered ends; `tone` is the wood's mean colour.
-core::Vec3 boardColor(core::Vec2 uv, int boards, const core::Vec3& tone, std::uint32_t seed);
+/// Boards along u. With pieces = 0 they run through the image uncut and do not repeat along u.
+struct Boards {
+  int rows = 8;         ///< across v
+  int pieces = 2;       ///< along u, their ends staggered from row to row
+  float joint = 0.55f;  ///< brightness of the joints, 1 = invisible
+};
+/// `tone` is the wood's mean colour.
+core::Vec3 boardColor(core::Vec2 uv, const Boards& layout, const core::Vec3& tone, std::uint32_t seed);
 /// 0 in the joints, 1 on the boards, with a little grain.
-float boardHeight(core::Vec2 uv, int boards, std::uint32_t seed);
+float boardHeight(core::Vec2 uv, const Boards& layout, std::uint32_t seed);
 
 /// Stone with warped veins.
 core::Vec3 marbleColor(core::Vec2 uv, const core::Vec3& ground, const core::Vec3& vein, std::uint32_t seed);
