@@ -17,6 +17,19 @@ Vec3 albedoOf(const core::AlbedoPair& pair, const Vec3& f0, float f90) {
   return glm::min(f0 * pair.scale + Vec3(f90 * pair.bias), Vec3(1));
 }
 
+/// What Burley's diffuse reflects, over Lambert; directions local.
+float burleyFactor(const Vec3& v, const Vec3& l, float roughness) {
+  const Vec3 sum = v + l;
+  const float length = glm::length(sum);
+  const float cosHalf = length > 0 ? glm::dot(l, sum) / length : 0;
+  const float grazing = 2 * roughness * cosHalf * cosHalf - 0.5f;  // F_D90 - 1
+  const auto side = [&](float cosine) {
+    const float m = std::clamp(1 - cosine, 0.0f, 1.0f);
+    return 1 + grazing * (m * m * m * m * m);
+  };
+  return side(v.z) * side(l.z);
+}
+
 Vec3 schlick(const Vec3& f0, float f90, float cosine) {
   const float m = std::clamp(1 - cosine, 0.0f, 1.0f);
   const float m2 = m * m;
@@ -70,7 +83,8 @@ Frame::Frame(const Vec3& normal) : n(normal) {
   b = {c, sign + n.y * n.y * a, -n.y};
 }
 
-Bsdf::Bsdf(const Surface& surface, const Vec3& toEye) : frame_(surface.ns), ng_(surface.ng) {
+Bsdf::Bsdf(const Surface& surface, const Vec3& toEye, DiffuseModel diffuseModel)
+    : frame_(surface.ns), ng_(surface.ng), diffuseModel_(diffuseModel) {
   v_ = frame_.toLocal(toEye);
   v_.z = std::max(v_.z, kLowestCosine);
   if (!surface.scatters()) return;
@@ -134,7 +148,8 @@ Vec3 Bsdf::evalDiffuse(const Vec3& wi) const {
   const Vec3 el = albedoOf(core::directionalAlbedo(wi.z, roughness_), f0Dielectric_, f90Dielectric_);
   const Vec3 mean = albedoOf(core::meanAlbedo(roughness_), f0Dielectric_, f90Dielectric_);
   const Vec3 room = glm::max(Vec3(1) - mean, Vec3(1e-4f));
-  return baseColor_ * (lambert_ / core::kPi * wi.z) * (Vec3(1) - ev) * (Vec3(1) - el) / room;
+  const float retro = diffuseModel_ == DiffuseModel::burley ? burleyFactor(v_, wi, roughness_) : 1.0f;
+  return baseColor_ * (lambert_ / core::kPi * wi.z * retro) * (Vec3(1) - ev) * (Vec3(1) - el) / room;
 }
 
 Vec3 Bsdf::diffuseUnderMap() const {

@@ -23,6 +23,13 @@ inline constexpr float kDeltaAlpha = 1e-3f;
 
 enum Lobes : unsigned { kLobeDiffuse = 1, kLobeSpecular = 2, kLobeAll = 3 };
 
+/// What lies under the specular lobe.
+enum class DiffuseModel {
+  lambert,  ///< glTF, the maps and the base layer
+  burley    ///< Lambert times Burley's retro-reflection (2012, section 5.3), as Blender's Principled BSDF has
+            ///< it: to compare pictures with such renderers
+};
+
 struct BsdfSample {
   Vec3 direction{0};  ///< unit, away from the surface
   Vec3 weight{0};     ///< f |cos| / pdf (delta: reflectance / probability)
@@ -55,7 +62,7 @@ struct Frame {
 class Bsdf {
  public:
   /// `toEye`: unit, from the surface to where the path came from.
-  Bsdf(const Surface& surface, const Vec3& toEye);
+  Bsdf(const Surface& surface, const Vec3& toEye, DiffuseModel diffuse = DiffuseModel::lambert);
 
   /// The specular lobes are deltas.
   bool delta() const { return delta_; }
@@ -107,6 +114,7 @@ class Bsdf {
   float f90_ = 1, f90Dielectric_ = 1;
   Vec3 baseColor_{0};
   float lambdaV_ = 0;
+  DiffuseModel diffuseModel_ = DiffuseModel::lambert;
   float diffuseShare_ = 0;  ///< probability of D when all lobes are sampled
   bool thin_ = false, straight_ = false, delta_ = false, specularAny_ = false, diffuseAny_ = false;
 };

@@ -52,7 +52,7 @@ class Walk {
   Vec3 incoming(Ray ray, int depth, float weight, const RoughRay* rough);
 
  private:
-  Vec3 reflectedAt(const Hit& hit, const Vec3& direction, int depth, float weight);
+  Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
   Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoice& choice, float rays,
@@ -78,25 +78,30 @@ Vec3 Walk::incoming(Ray ray, int depth, float weight, const RoughRay* rough) {
   Hit hit;
   for (int layer = 0; layer < kMaxLayers && world_.intersect(ray, hit, counters_); ++layer) {
     travelled += hit.t;
-    const TriangleRecord& record = world_.record(hit.triangle);
-    // A diffuse hit, or the end of the specular chain: the maps' light.
-    const BaseLight base = baseLight(world_, hit, ray.direction);
-    Vec3 radiance(0);
-    if (largest(base.emitted) > 0)
-      radiance += base.emitted * emissionWeight(hit, ray.direction, travelled, rough);
-    radiance += world_.diffuse(record.object) || depth >= world_.recursionDepth()
-                    ? base.reflected
-                    : reflectedAt(hit, ray.direction, depth, weight * through * base.coverage);
-    sum += radiance * (through * base.coverage);
-    through *= 1 - base.coverage;
+    float coverage = 1;
+    Vec3 radiance(0), emitted(0);
+    if (world_.diffuse(hit.object) || depth >= world_.recursionDepth()) {
+      // A diffuse hit, or the end of the specular chain: the maps' light.
+      const BaseLight base = baseLight(world_, hit, ray.direction);
+      coverage = base.coverage;
+      radiance = base.reflected;
+      emitted = base.emitted;
+    } else {
+      const Surface surface = makeSurface(world_, hit, ray.direction);
+      coverage = surface.point.coverage;
+      radiance = scattered(surface, ray.direction, depth, weight * through * coverage);
+      emitted = surface.emitted();
+    }
+    if (largest(emitted) > 0) radiance += emitted * emissionWeight(hit, ray.direction, travelled, rough);
+    sum += radiance * (through * coverage);
+    through *= 1 - coverage;
     if (!(through > 0)) break;
     ray = makeSurface(world_, hit, ray.direction).leave(ray.direction);
   }
   return sum;
 }
 
-Vec3 Walk::reflectedAt(const Hit& hit, const Vec3& direction, int depth, float weight) {
-  const Surface surface = makeSurface(world_, hit, direction);
+Vec3 Walk::scattered(const Surface& surface, const Vec3& direction, int depth, float weight) {
   if (!surface.scatters()) return Vec3(0);
   if (surface.material->unlit) return surface.point.baseColor;
   const Bsdf bsdf(surface, -direction);

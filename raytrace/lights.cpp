@@ -103,7 +103,7 @@ Lights::Lights(const core::Scene& scene, const World& world) : scene_(scene), wo
 
 void Lights::addEmissive(const core::Scene& scene) {
   for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-    const CompiledMaterial& m = world_.material(static_cast<std::uint32_t>(scene.objects[o].material));
+    const CompiledMaterial& m = world_.materialOf(o);
     if (!m.emits()) continue;
     Group group;
     group.first = static_cast<std::uint32_t>(emissive_.size());
@@ -223,7 +223,7 @@ bool Lights::sampleTriangle(const Group& group, const Vec3& point, float uTriang
   const float facing = e.doubleSided ? std::fabs(cosine) : cosine;
   if (!(facing > 0)) return false;
   const TriangleRecord& r = world_.record(e.triangle);
-  const CompiledMaterial& m = world_.material(r.material);
+  const CompiledMaterial& m = world_.materialOf(r.object);
   out.radiance = m.emission;
   if (m.emissionTexture) {
     out.radiance *=
@@ -300,7 +300,7 @@ EmissionSample Lights::sampleEmission(float uLight, const Vec2& uPosition, const
     const Vec2 b = uniformTriangle(uPosition);
     const TriangleShape& s = world_.shape(e.triangle);
     const TriangleRecord& r = world_.record(e.triangle);
-    const CompiledMaterial& m = world_.material(r.material);
+    const CompiledMaterial& m = world_.materialOf(r.object);
     const bool back = e.doubleSided && rest < 0.5f;
     out.origin = s.position[0] * (1 - b.x - b.y) + s.position[1] * b.x + s.position[2] * b.y;
     out.normal = back ? -e.normal : e.normal;

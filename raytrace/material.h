@@ -1,27 +1,13 @@
 // Materials as the tracer wants them: factors and resolved textures, packed once per scene.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/scene/scene.h"
 #include "raytrace/ray.h"
+#include "raytrace/texture_store.h"
 
 namespace saccade::raytrace {
-
-/// Texels of one texture with its wrap modes. Points into the scene's textures.
-struct TextureView {
-  const core::Rgba8* texels = nullptr;
-  int width = 0, height = 0;
-  core::Wrap wrapS = core::Wrap::repeat, wrapT = core::Wrap::repeat;
-  bool nearest = false;
-  const float* decode = nullptr;  ///< byte to linear colour, 256 entries
-  std::uint8_t uvSet = 0;
-
-  explicit operator bool() const { return texels != nullptr; }
-  /// Bilinear (or nearest) RGBA, colour decoded to linear. v runs downwards. Non-finite uv reads texel 0.
-  core::Vec4 sample(const Vec2& uv) const;
-};
 
 /// One material, compiled. All functions of it may be called from any thread.
 struct CompiledMaterial {
@@ -50,7 +36,8 @@ struct CompiledMaterial {
   bool emits() const { return !unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0); }
 };
 
-CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material& material);
+CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material& material,
+                                 const TextureStore& textures);
 
 /// Material parameters at one point.
 struct MaterialPoint {

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "core/math/random.h"
-#include "raytrace/bsdf.h"
 #include "raytrace/lights.h"
 #include "raytrace/parallel_rows.h"
 #include "raytrace/surface.h"
@@ -28,11 +27,11 @@ float powerHeuristic(float a, float b) {
 /// The material as the transport sees it: with Transport::diffuse only the base layer's Lambert lobe.
 class Scatterer {
  public:
-  Scatterer(const Surface& surface, const Vec3& toEye, Transport transport)
-      : full_(surface, toEye),
+  Scatterer(const Surface& surface, const Vec3& toEye, const PathOptions& options)
+      : full_(surface, toEye, options.diffuse),
         frame_(surface.ns),
         ng_(surface.ng),
-        diffuseOnly_(transport == Transport::diffuse) {
+        diffuseOnly_(options.transport == Transport::diffuse) {
     albedo_ = diffuseOnly_ && surface.scatters() ? baseAlbedo(surface.point) : Vec3(0);
   }
   /// Light sampling can contribute.
@@ -108,7 +107,7 @@ class Path {
 
   /// Direct light by light sampling, then the next ray. False when the path ends.
   bool scatter(const Surface& surface, Ray& ray) {
-    const Scatterer material(surface, -ray.direction, options_.transport);
+    const Scatterer material(surface, -ray.direction, options_);
     const bool lights = !world_.lights().empty() && material.takesLight();
     if (lights) {
       choice_ = world_.lights().choose(surface.position);

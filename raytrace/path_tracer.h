@@ -7,6 +7,7 @@
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/progress.h"
+#include "raytrace/bsdf.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
@@ -20,6 +21,7 @@ struct PathOptions {
   int samplesPerPixel = 64;
   int bounces = 12;  ///< scattering events; 0 = emission only, 1 = direct light
   Transport transport = Transport::all;
+  DiffuseModel diffuse = DiffuseModel::lambert;  ///< with Transport::all
   std::uint32_t seed = 1;
   int threads = 0;        ///< 0 = on the calling thread
   bool variance = false;  ///< fill PathResult::variance

@@ -23,6 +23,7 @@ struct Ray {
 /// Nearest hit. Position = (1 - u - v) p0 + u p1 + v p2.
 struct Hit {
   std::uint32_t triangle = 0;  ///< index over the whole world (World::record)
+  std::uint32_t object = 0;    ///< index into the scene's objects
   float t = 0, u = 0, v = 0;
   Vec3 ng{0};  ///< geometric normal, not unit; its front is the triangle's front
 };
@@ -50,10 +51,9 @@ inline bool traceable(const Ray& r) {
   const auto in = [](float x) { return std::fabs(x) <= kLargest; };  // false for NaN
   const bool bounded = in(r.origin.x) & in(r.origin.y) & in(r.origin.z) & in(r.direction.x) &
                        in(r.direction.y) & in(r.direction.z);
-  const float longest =
-      std::fmax(std::fabs(r.direction.x), std::fmax(std::fabs(r.direction.y), std::fabs(r.direction.z)));
-  return bounded & (longest >= std::numeric_limits<float>::min()) & (r.tNear >= 0) & (r.tNear <= r.tFar) &
-         (r.tNear <= kLargest);
+  const auto counts = [](float x) { return std::fabs(x) >= std::numeric_limits<float>::min(); };
+  const bool directed = counts(r.direction.x) | counts(r.direction.y) | counts(r.direction.z);
+  return bounded & directed & (r.tNear >= 0) & (r.tNear <= r.tFar) & (r.tNear <= kLargest);
 }
 
 }  // namespace saccade::raytrace

@@ -8,8 +8,9 @@
 namespace saccade::raytrace {
 namespace {
 
-template <class T>
-T interpolate(const T (&v)[3], float u, float b) {
+/// Also of normals, which unpack one by one.
+template <class Array>
+auto interpolate(const Array& v, float u, float b) {
   return v[0] * (1 - u - b) + v[1] * u + v[2] * b;
 }
 
@@ -65,7 +66,7 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
   p.ior = m.ior;
   p.diffuseFactor = m.diffuseFactor;
   if (m.textured) applyTextures(world, hit, record, uv0, m, p);
-  if (world.hasColors(record.object)) {
+  if (world.hasColors(hit.object)) {
     const core::Vec4 c =
         interpolateMesh(world, hit, record.object, world.scene().objects[record.object].mesh.colors);
     p.baseColor *= Vec3(c);
@@ -115,10 +116,10 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
   const TriangleShape& shape = world.shape(hit.triangle);
   Surface s;
   s.triangle = hit.triangle;
-  s.object = record.object;
+  s.object = hit.object;
   s.offset = record.offset;
-  s.material = &world.material(record.material);
-  s.closed = world.closed(record.object);
+  s.material = &world.materialOf(hit.object);
+  s.closed = world.closed(hit.object);
   s.position = interpolate(shape.position, hit.u, hit.v);
   s.uv0 = interpolate(record.uv0, hit.u, hit.v);
   s.lightmapUv = interpolate(record.lightmapUv, hit.u, hit.v);
@@ -140,6 +141,7 @@ Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, 
   const TriangleShape& shape = world.shape(triangle);
   Hit hit;
   hit.triangle = triangle;
+  hit.object = world.record(triangle).object;
   hit.u = u;
   hit.v = v;
   hit.ng = glm::cross(shape.position[1] - shape.position[0], shape.position[2] - shape.position[0]);
@@ -149,7 +151,7 @@ Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, 
 
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   const TriangleRecord& record = world.record(hit.triangle);
-  const CompiledMaterial& m = world.material(record.material);
+  const CompiledMaterial& m = world.materialOf(hit.object);
   const bool front = glm::dot(hit.ng, direction) <= 0;
   BaseLight light;
   const MaterialPoint p = evaluateMaterial(world, hit, record, m, interpolate(record.uv0, hit.u, hit.v));

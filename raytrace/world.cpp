@@ -31,6 +31,7 @@ struct Context {
 /// Per object, for the filters; objects without either need none.
 struct FilterData {
   const World* world = nullptr;
+  std::uint32_t object = 0;
   std::uint32_t firstTriangle = 0;
   bool alpha = false;
   std::vector<bool> duplicate;  ///< by triangle; empty when none
@@ -39,7 +40,7 @@ struct FilterData {
 /// Alpha of the texel, factor and vertex colour.
 float alphaAt(const World& world, std::uint32_t triangle, float u, float v) {
   const TriangleRecord& r = world.record(triangle);
-  const CompiledMaterial& m = world.material(r.material);
+  const CompiledMaterial& m = world.materialOf(r.object);
   float alpha = m.alpha;
   const core::Mesh& mesh = world.scene().objects[r.object].mesh;
   const std::uint32_t* corner = &mesh.indices[3 * (triangle - world.firstTriangle(r.object))];
@@ -66,7 +67,7 @@ bool isThere(const FilterData& data, const RTCFilterFunctionNArguments& args, fl
   if (!data.alpha) return true;
   const std::uint32_t triangle = data.firstTriangle + prim;
   alpha = alphaAt(*data.world, triangle, RTCHitN_u(args.hit, args.N, 0), RTCHitN_v(args.hit, args.N, 0));
-  const CompiledMaterial& m = data.world->material(data.world->record(triangle).material);
+  const CompiledMaterial& m = data.world->materialOf(data.object);
   return m.alphaMode != core::AlphaMode::mask || alpha >= m.alphaCutoff;
 }
 
@@ -82,8 +83,7 @@ void filterOccluded(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
     return;
   }
-  const std::uint32_t triangle = data.firstTriangle + RTCHitN_primID(args->hit, args->N, 0);
-  if (data.world->material(data.world->record(triangle).material).alphaMode != core::AlphaMode::blend) return;
+  if (data.world->materialOf(data.object).alphaMode != core::AlphaMode::blend) return;
   auto* context = reinterpret_cast<Context*>(args->context);
   context->transmittance *= 1 - std::clamp(alpha, 0.0f, 1.0f);
   if (context->transmittance > 0) args->valid[0] = 0;
@@ -159,7 +159,8 @@ RTCRayHit toRayHit(const Ray& r) {
   return rh;
 }
 
-void fromEmbree(const RTCRayHit& rh, std::uint32_t firstTriangle, Hit& hit) {
+void fromEmbree(const RTCRayHit& rh, std::uint32_t object, std::uint32_t firstTriangle, Hit& hit) {
+  hit.object = object;
   hit.triangle = firstTriangle + rh.hit.primID;
   hit.t = rh.ray.tfar;
   hit.u = rh.hit.u;
@@ -197,9 +198,13 @@ struct World::Embree {
 };
 
 World::World(const core::Scene& scene, const core::Plan& plan)
-    : scene_(scene), recursionDepth_(plan.recursionDepth), embree_(std::make_unique<Embree>()) {
+    : scene_(scene),
+      recursionDepth_(plan.recursionDepth),
+      textures_(scene),
+      embree_(std::make_unique<Embree>()) {
   materials_.reserve(scene.materials.size());
-  for (const core::Material& m : scene.materials) materials_.push_back(compileMaterial(scene, m));
+  for (const core::Material& m : scene.materials) materials_.push_back(compileMaterial(scene, m, textures_));
+  for (const core::Object& o : scene.objects) materialOf_.push_back(static_cast<std::uint32_t>(o.material));
   buildRecords();
   lights_ = std::make_unique<Lights>(scene, *this);
   for (std::size_t i = 0; i < lights_->emissiveCount(); ++i) {
@@ -229,14 +234,13 @@ void World::buildRecords() {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t i = mesh.indices[3 * t + k];
         s.position[k] = mesh.positions[i];
-        s.normal[k] = mesh.normals.empty() ? Vec3(0) : mesh.normals[i];
+        if (!mesh.normals.empty()) s.normal.set(k, mesh.normals[i]);
         if (!mesh.uv0.empty()) r.uv0[k] = mesh.uv0[i];
         if (!mesh.lightmapUv.empty()) r.lightmapUv[k] = mesh.lightmapUv[i];
         const Vec3 a = glm::abs(s.position[k]);
         largest = std::max({largest, a.x, a.y, a.z});
       }
       r.object = o;
-      r.material = static_cast<std::uint32_t>(object.material);
       r.offset = largest * (kOffsetRoundings * kHalfUlp);
       records_.push_back(r);
       shapes_.push_back(s);
@@ -305,8 +309,9 @@ void World::buildTrees() {
 
     auto filter = std::make_unique<FilterData>();
     filter->world = this;
+    filter->object = o;
     filter->firstTriangle = firstTriangle_[o];
-    filter->alpha = materials_[scene_.objects[o].material].alphaMode != core::AlphaMode::opaque;
+    filter->alpha = materialOf(o).alphaMode != core::AlphaMode::opaque;
     const auto first = duplicate.begin() + firstTriangle_[o],
                last = duplicate.begin() + firstTriangle_[o + 1];
     if (std::find(first, last, true) != last) filter->duplicate.assign(first, last);
@@ -344,36 +349,48 @@ void World::setMaps(const core::IlluminationMaps* maps) {
   mapWidth_ = maps->width;
   mapHeight_ = maps->height;
   mapLayers_ = maps->layers;
-  const std::size_t n = static_cast<std::size_t>(mapWidth_) * mapHeight_ * mapLayers_;
-  mapTexels_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    mapTexels_[i] = static_cast<std::uint64_t>(maps->texels[3 * i]) |
-                    static_cast<std::uint64_t>(maps->texels[3 * i + 1]) << 16 |
-                    static_cast<std::uint64_t>(maps->texels[3 * i + 2]) << 32;
+  mapTilesAcross_ = (mapWidth_ + kMapTileX - 1) / kMapTileX;
+  mapTilesDown_ = (mapHeight_ + kMapTileY - 1) / kMapTileY;
+  mapTexels_.resize(static_cast<std::size_t>(mapTilesAcross_) * mapTilesDown_ * mapLayers_ * kMapTileX *
+                    kMapTileY);
+  const std::uint16_t* in = maps->texels.data();
+  for (int layer = 0; layer < mapLayers_; ++layer) {
+    for (int y = 0; y < mapHeight_; ++y) {
+      for (int x = 0; x < mapWidth_; ++x, in += 3) {
+        mapTexels_[mapIndex(x, y, layer)] = static_cast<std::uint64_t>(in[0]) |
+                                            static_cast<std::uint64_t>(in[1]) << 16 |
+                                            static_cast<std::uint64_t>(in[2]) << 32;
+      }
+    }
   }
+}
+
+std::size_t World::mapIndex(int x, int y, int layer) const {
+  const std::size_t row = static_cast<std::size_t>(layer) * mapTilesDown_ + y / kMapTileY;
+  return ((row * mapTilesAcross_ + x / kMapTileX) * kMapTileY + y % kMapTileY) * kMapTileX + x % kMapTileX;
 }
 
 Vec3 World::irradiance(const Vec2& uv, int layer) const {
   if (layer >= mapLayers_ || mapTexels_.empty()) return Vec3(0);
-  // fmax/fmin turn NaN into a bound.
-  const float x = std::fmin(std::fmax(uv.x * static_cast<float>(mapWidth_) - 0.5f, 0.0f),
-                            static_cast<float>(mapWidth_ - 1));
-  const float y = std::fmin(std::fmax(uv.y * static_cast<float>(mapHeight_) - 0.5f, 0.0f),
-                            static_cast<float>(mapHeight_ - 1));
-  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
-  const int right = x0 + 1 < mapWidth_ ? 1 : 0;
-  const std::uint64_t* row0 =
-      mapTexels_.data() + (static_cast<std::size_t>(layer) * mapHeight_ + y0) * mapWidth_ + x0;
-  const std::uint64_t* row1 = row0 + (y0 + 1 < mapHeight_ ? mapWidth_ : 0);
-  const auto decode = [](std::uint64_t texel) {
-    return _mm_cvtph_ps(_mm_cvtsi64_si128(static_cast<long long>(texel)));
+  // Written so that NaN gives 0.
+  const auto inside = [](float v, int size) {
+    const float last = static_cast<float>(size - 1);
+    const float x = v * static_cast<float>(size) - 0.5f;
+    return x > 0 ? (x < last ? x : last) : 0.0f;
+  };
+  const float x = inside(uv.x, mapWidth_), y = inside(uv.y, mapHeight_);
+  const auto x0 = static_cast<unsigned>(x), y0 = static_cast<unsigned>(y);
+  const unsigned x1 = x0 + 1 < static_cast<unsigned>(mapWidth_) ? x0 + 1 : x0;
+  const unsigned y1 = y0 + 1 < static_cast<unsigned>(mapHeight_) ? y0 + 1 : y0;
+  const auto texel = [&](unsigned column, unsigned row) {
+    const std::uint64_t bits = mapTexels_[mapIndex(static_cast<int>(column), static_cast<int>(row), layer)];
+    return _mm_cvtph_ps(_mm_cvtsi64_si128(static_cast<long long>(bits)));
   };
   const __m128 fx = _mm_set1_ps(x - static_cast<float>(x0)), fy = _mm_set1_ps(y - static_cast<float>(y0));
   const auto mix = [](__m128 a, __m128 b, __m128 f) {
     return _mm_add_ps(a, _mm_mul_ps(f, _mm_sub_ps(b, a)));
   };
-  const __m128 sum =
-      mix(mix(decode(row0[0]), decode(row0[right]), fx), mix(decode(row1[0]), decode(row1[right]), fx), fy);
+  const __m128 sum = mix(mix(texel(x0, y0), texel(x1, y0), fx), mix(texel(x0, y1), texel(x1, y1), fx), fy);
   alignas(16) float out[4];
   _mm_store_ps(out, sum);
   return {out[0], out[1], out[2]};
@@ -390,15 +407,14 @@ bool World::intersect(const Ray& ray, Hit& hit, RayCounters& counters) const {
   Context context;
   rtcIntersect1(embree_->world, &context.base, &rh);
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  fromEmbree(rh, firstTriangle_[rh.hit.geomID], hit);
+  fromEmbree(rh, rh.hit.geomID, firstTriangle_[rh.hit.geomID], hit);
   return true;
 }
 
 bool World::intersectVisible(const Ray& ray, Hit& hit, RayCounters& counters) const {
   Ray rest = ray;
   while (intersect(rest, hit, counters)) {
-    if (glm::dot(hit.ng, ray.direction) <= 0 || materials_[records_[hit.triangle].material].scattersBehind())
-      return true;
+    if (glm::dot(hit.ng, ray.direction) <= 0 || materialOf(hit.object).scattersBehind()) return true;
     rest.tNear = std::nextafter(hit.t, core::kInfinity);
   }
   return false;
@@ -406,7 +422,7 @@ bool World::intersectVisible(const Ray& ray, Hit& hit, RayCounters& counters) co
 
 bool World::intersectVisible(std::uint32_t object, const Ray& ray, Hit& hit, RayCounters& counters) const {
   Ray rest = ray;
-  const bool back = materials_[scene_.objects[object].material].scattersBehind();
+  const bool back = materialOf(object).scattersBehind();
   while (true) {
     if (!embree_->own[object] || !traceable(rest)) {
       ++counters.refused;
@@ -418,7 +434,7 @@ bool World::intersectVisible(std::uint32_t object, const Ray& ray, Hit& hit, Ray
     Context context(true);
     rtcIntersect1(embree_->own[object], &context.base, &rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    fromEmbree(rh, firstTriangle_[object], hit);
+    fromEmbree(rh, object, firstTriangle_[object], hit);
     if (back || glm::dot(hit.ng, ray.direction) <= 0) return true;
     rest.tNear = std::nextafter(hit.t, core::kInfinity);
   }
@@ -441,6 +457,7 @@ bool World::closestPoint(std::uint32_t object, const Vec3& point, Hit& hit) cons
   if (state.prim == RTC_INVALID_GEOMETRY_ID) return false;
   const TriangleShape& s = state.shapes[state.prim];
   hit.triangle = firstTriangle_[object] + state.prim;
+  hit.object = object;
   hit.t = 0;
   hit.u = state.barycentric.x;
   hit.v = state.barycentric.y;

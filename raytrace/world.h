@@ -5,7 +5,9 @@
 // Read-only once built: all const functions may be called from any thread at once.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <vector>
@@ -25,15 +27,38 @@ struct alignas(64) TriangleRecord {
   Vec2 lightmapUv[3];
   Vec2 uv0[3];
   std::uint32_t object = 0;
-  std::uint32_t material = 0;
   float offset = 0;         ///< metres by which rays start off this triangle, along the geometric normal
   std::int32_t light = -1;  ///< index of the emissive triangle in Lights
 };
 
-/// What a hit needs beyond that when rays leave it.
-struct TriangleShape {
+/// Three unit normals of 64 bits each: 21 bits a component.
+class PackedNormals {
+ public:
+  void set(int k, const Vec3& n) {
+    const auto pack = [](float x) {
+      return static_cast<std::uint64_t>(std::lround(x * kOne)) & ((1u << 21) - 1);
+    };
+    const std::uint64_t bits = pack(n.x) | pack(n.y) << 21 | pack(n.z) << 42;
+    std::memcpy(&words_[2 * k], &bits, sizeof bits);
+  }
+  /// Not exactly unit; 0 where none was set.
+  Vec3 operator[](int k) const {
+    std::int64_t bits = 0;
+    std::memcpy(&bits, &words_[2 * k], sizeof bits);
+    return Vec3(static_cast<float>(bits << 43 >> 43), static_cast<float>(bits << 22 >> 43),
+                static_cast<float>(bits << 1 >> 43)) *
+           (1 / kOne);
+  }
+
+ private:
+  static constexpr float kOne = (1 << 20) - 1;
+  std::uint32_t words_[6] = {};
+};
+
+/// What a hit needs beyond that when rays leave it: one more cache line.
+struct alignas(64) TriangleShape {
   Vec3 position[3];
-  Vec3 normal[3];
+  PackedNormals normal;
 };
 
 class World {
@@ -72,6 +97,7 @@ class World {
   const TriangleRecord& record(std::uint32_t triangle) const { return records_[triangle]; }
   const TriangleShape& shape(std::uint32_t triangle) const { return shapes_[triangle]; }
   const CompiledMaterial& material(std::uint32_t index) const { return materials_[index]; }
+  const CompiledMaterial& materialOf(std::uint32_t object) const { return materials_[materialOf_[object]]; }
   std::size_t triangleCount() const { return records_.size(); }
   std::uint32_t firstTriangle(std::uint32_t object) const { return firstTriangle_[object]; }
   bool closed(std::uint32_t object) const { return flags_[object] & kClosed; }
@@ -84,18 +110,23 @@ class World {
   friend std::uint64_t replayRays(const World& world, const RayLog& log);
   struct Embree;
   enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4 };
+  static constexpr int kMapTileX = 4, kMapTileY = 2;
+  std::size_t mapIndex(int x, int y, int layer) const;
   void buildRecords();
   void buildTrees();
 
   const core::Scene& scene_;
   int recursionDepth_ = 0;
+  TextureStore textures_;
   std::vector<CompiledMaterial> materials_;
-  std::vector<TriangleRecord> records_;
-  std::vector<TriangleShape> shapes_;
+  std::vector<std::uint32_t> materialOf_;  ///< by object
+  HugeVector<TriangleRecord> records_;
+  HugeVector<TriangleShape> shapes_;
   std::vector<std::uint32_t> firstTriangle_;  ///< by object, one more at the end
   std::vector<std::uint8_t> flags_;           ///< by object
   std::vector<std::uint32_t> objectOfId_;
-  std::vector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves
+  HugeVector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves, 4 x 2 to a cache line
+  int mapTilesAcross_ = 0, mapTilesDown_ = 0;
   int mapWidth_ = 0, mapHeight_ = 0, mapLayers_ = 0;
   std::unique_ptr<Lights> lights_;
   std::unique_ptr<Embree> embree_;

@@ -1,0 +1,122 @@
+#include "raytrace/texture_store.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/image_io.h"
+
+namespace saccade::raytrace {
+namespace {
+
+constexpr int kTile = 4;
+constexpr int kTexelsPerTile = kTile * kTile;
+
+/// Byte to linear, for sRGB and for plain data.
+struct DecodeTables {
+  std::array<float, 256> srgb, plain;
+  DecodeTables() {
+    for (int i = 0; i < 256; ++i) {
+      plain[i] = static_cast<float>(i) / 255.0f;
+      srgb[i] = core::decodeSrgb(plain[i]);
+    }
+  }
+};
+const DecodeTables& decodeTables() {
+  static const DecodeTables tables;
+  return tables;
+}
+
+/// Texel index of an integer position that may lie outside [0, size).
+int wrapTexel(int i, int size, core::Wrap wrap) {
+  if (static_cast<unsigned>(i) < static_cast<unsigned>(size)) return i;
+  switch (wrap) {
+    case core::Wrap::clamp:
+      return i < 0 ? 0 : size - 1;
+    case core::Wrap::repeat: {
+      const int r = i % size;
+      return r < 0 ? r + size : r;
+    }
+    case core::Wrap::mirror: {
+      int r = i % (2 * size);
+      if (r < 0) r += 2 * size;
+      return r < size ? r : 2 * size - 1 - r;
+    }
+  }
+  return 0;
+}
+
+std::size_t tiledIndex(int x, int y, int tilesAcross) {
+  const std::size_t tile = static_cast<std::size_t>(y / kTile) * tilesAcross + x / kTile;
+  return tile * kTexelsPerTile + (y % kTile) * kTile + x % kTile;
+}
+
+int tiles(int size) { return (size + kTile - 1) / kTile; }
+
+}  // namespace
+
+TextureStore::TextureStore(const core::Scene& scene) {
+  std::size_t total = 0;
+  for (const core::Texture& t : scene.textures) {
+    total += static_cast<std::size_t>(tiles(t.image.width())) * tiles(t.image.height()) * kTexelsPerTile;
+  }
+  texels_.resize(total);
+  std::uint32_t* next = texels_.data();
+  for (const core::Texture& t : scene.textures) {
+    TextureView v;
+    if (!t.image.empty()) {
+      v.texels = next;
+      v.decode = (t.srgb ? decodeTables().srgb : decodeTables().plain).data();
+      v.width = t.image.width();
+      v.height = t.image.height();
+      v.tilesAcross = tiles(v.width);
+      v.wrapS = t.wrapS;
+      v.wrapT = t.wrapT;
+      v.nearest = t.nearest;
+      for (int y = 0; y < v.height; ++y) {
+        for (int x = 0; x < v.width; ++x) {
+          const core::Rgba8& p = t.image.at(x, y);
+          next[tiledIndex(x, y, v.tilesAcross)] = p.r | static_cast<std::uint32_t>(p.g) << 8 |
+                                                  static_cast<std::uint32_t>(p.b) << 16 |
+                                                  static_cast<std::uint32_t>(p.a) << 24;
+        }
+      }
+      next += static_cast<std::size_t>(v.tilesAcross) * tiles(v.height) * kTexelsPerTile;
+    }
+    views_.push_back(v);
+  }
+}
+
+TextureView TextureStore::view(const core::TextureSlot& slot) const {
+  if (!slot) return {};
+  TextureView v = views_[slot.texture];
+  v.uvSet = static_cast<std::uint8_t>(slot.uvSet);
+  return v;
+}
+
+core::Vec4 TextureView::sample(const Vec2& uv) const {
+  constexpr float kLargest = 1e6f;  // beyond, a float no longer resolves texels
+  const bool sound = std::fabs(uv.x) < kLargest && std::fabs(uv.y) < kLargest;
+  const float x = sound ? uv.x * static_cast<float>(width) : 0;
+  const float y = sound ? uv.y * static_cast<float>(height) : 0;
+  const auto fetch = [&](int column, int row) {
+    const std::uint32_t t = texels[tiledIndex(column, row, tilesAcross)];
+    return core::Vec4(decode[t & 255], decode[t >> 8 & 255], decode[t >> 16 & 255],
+                      static_cast<float>(t >> 24) * (1 / 255.0f));
+  };
+  if (nearest) {
+    return fetch(wrapTexel(static_cast<int>(std::floor(x)), width, wrapS),
+                 wrapTexel(static_cast<int>(std::floor(y)), height, wrapT));
+  }
+  const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
+  const float fx = x - 0.5f - left, fy = y - 0.5f - top;
+  const int x0 = wrapTexel(static_cast<int>(left), width, wrapS);
+  const int x1 = wrapTexel(static_cast<int>(left) + 1, width, wrapS);
+  const int y0 = wrapTexel(static_cast<int>(top), height, wrapT);
+  const int y1 = wrapTexel(static_cast<int>(top) + 1, height, wrapT);
+  const core::Vec4 a = fetch(x0, y0), b = fetch(x1, y0), c = fetch(x0, y1), d = fetch(x1, y1);
+  const core::Vec4 upper = a + (b - a) * fx;
+  return upper + (c + (d - c) * fx - upper) * fy;
+}
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,40 @@
+// The scene's texels in the order in which rays want them: 4 x 4 texels to a cache line, on huge pages.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "raytrace/huge_pages.h"
+#include "raytrace/ray.h"
+
+namespace saccade::raytrace {
+
+/// One texture as a material reads it. Points into a TextureStore.
+struct TextureView {
+  const std::uint32_t* texels = nullptr;  ///< RGBA, R in the lowest byte; tiled
+  const float* decode = nullptr;          ///< byte to linear colour, 256 entries
+  int width = 0, height = 0;
+  int tilesAcross = 0;
+  core::Wrap wrapS = core::Wrap::repeat, wrapT = core::Wrap::repeat;
+  bool nearest = false;
+  std::uint8_t uvSet = 0;
+
+  explicit operator bool() const { return texels != nullptr; }
+  /// Bilinear (or nearest) RGBA, colour decoded to linear. v runs downwards. Beyond +-1e6 and for NaN, uv =
+  /// 0.
+  core::Vec4 sample(const Vec2& uv) const;
+};
+
+class TextureStore {
+ public:
+  explicit TextureStore(const core::Scene& scene);
+  /// False (no texels) for an empty slot.
+  TextureView view(const core::TextureSlot& slot) const;
+
+ private:
+  HugeVector<std::uint32_t> texels_;
+  std::vector<TextureView> views_;  ///< by texture
+};
+
+}  // namespace saccade::raytrace
