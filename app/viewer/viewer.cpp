@@ -99,6 +99,7 @@ class Viewer {
       overlay = aovPicture(*panel_.overlay, aovValues(*panel_.overlay, loop_), options_.corrective.maxAge);
       shown = &overlay;
     }
+    window_.bind();
     presenter_.present(*shown, {0, 0, size.width, size.height}, window_.width(), window_.height());
     imgui_.newFrame(window_.width(), window_.height());
     drawPanel(panel_, loop_, times_, window_.width(), window_.height());

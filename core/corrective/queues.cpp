@@ -63,7 +63,7 @@ void RegionQueue::beginFrame(FramePtr frame) {
     // The old frame, if it was the last reference, dies outside the lock, with the argument.
     std::swap(frame_, frame);
     const auto& extents = frame_->extents;
-    if (basePriority_.size() < extents.size()) basePriority_.resize(extents.size(), 1.0f);
+    if (basePriority_.size() < extents.size()) basePriority_.resize(extents.size(), kUnseenPriority);
     heap_.clear();
     for (std::uint32_t id = 1; id < extents.size(); ++id) {
       const ObjectExtent& e = extents[id];
@@ -79,9 +79,11 @@ void RegionQueue::beginFrame(FramePtr frame) {
 
 void RegionQueue::setPriorities(std::span<const float> byId) {
   const std::lock_guard lock(mutex_);
-  if (basePriority_.size() < byId.size()) basePriority_.resize(byId.size(), 1.0f);
+  if (basePriority_.size() < byId.size()) basePriority_.resize(byId.size(), kUnseenPriority);
   for (std::size_t id = 1; id < byId.size(); ++id) {
-    basePriority_[id] = byId[id] > 0 ? std::clamp(byId[id], kLowestPriority, 1.0f) : kLowestPriority;
+    // 0 = the analysis did not see the object: should it come into view, it starts ahead of what is partly corrected.
+    const float given = byId[id] > 0 ? std::clamp(byId[id], kLowestPriority, 1.0f) : kLowestPriority;
+    basePriority_[id] = byId[id] == 0 ? kUnseenPriority : given;
   }
   for (Region& region : heap_) region.priority = reducedPriority(region);
   std::make_heap(heap_.begin(), heap_.end(), later);

@@ -46,8 +46,9 @@ class RegionQueue {
   /// an object that the analyzer has not seen yet). Sequence numbers start at 0 with every new epoch.
   void beginFrame(FramePtr frame);
   /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs, and [0] is ignored.
-  /// Values above 1 count as 1, others outside (0, 1] (NaN too) as kLowestPriority. Regions keep their
-  /// progress; the reductions by level that they have suffered are applied again.
+  /// Values above 1 count as 1, NaN and negative ones as kLowestPriority, 0 (not in the picture) as
+  /// kUnseenPriority. Regions keep their progress; the reductions by level that they have suffered are
+  /// applied again.
   void setPriorities(std::span<const float> byId);
   /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority,
   /// or, when the level is finished, with the next level at 0.9 of the priority (section 3: 10 % rule;
@@ -62,6 +63,7 @@ class RegionQueue {
 
   static constexpr float kLevelReduction = 0.9f;
   static constexpr float kLowestPriority = 1e-6f;
+  static constexpr float kUnseenPriority = 1;  ///< of an object that no analysis has seen yet
 
  private:
   struct Region {

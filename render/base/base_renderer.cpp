@@ -207,8 +207,8 @@ void BaseRenderer::State::draw(const core::View& view) {
   for (const Visible& v : order) {
     const DrawItem& item = *v.item;
     useState(item, view);
-    cullBackFaces(item.solid && v.distanceSquared > nearCorner * nearCorner &&
-                  v.distanceSquared < core::kInfinity);
+    const bool outside = v.distanceSquared > nearCorner * nearCorner && v.distanceSquared < core::kInfinity;
+    cullBackFaces(item.oneSided || (item.solid && outside));
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(item.indexCount), GL_UNSIGNED_INT,
                     reinterpret_cast<const void*>(std::size_t{item.firstIndex} * sizeof(std::uint32_t)));
     stats.triangles += item.indexCount / 3;

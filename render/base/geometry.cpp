@@ -53,6 +53,9 @@ bool isSolid(const core::Scene& scene, const core::Object& object) {
   return opaque && object.closed && isOutwardSolid(object.mesh);
 }
 
+/// As the tracer has it: what refracts is seen from inside too.
+bool isOneSided(const core::Material& material) { return !material.doubleSided && material.transmission == 0; }
+
 template <class T>
 void fillBuffer(const Gl& gl, GLenum target, const std::vector<T>& data) {
   gl.BufferData(target, static_cast<GLsizeiptr>(data.size() * sizeof(T)), data.data(), GL_STATIC_DRAW);
@@ -71,6 +74,7 @@ Geometry::Geometry(const Gl& gl, const core::Scene& scene) {
     item.attributes = attributesOf(item.features);
     item.indexCount = static_cast<std::uint32_t>(object.mesh.indices.size());
     item.solid = isSolid(scene, object);
+    item.oneSided = isOneSided(scene.materials[object.material]);
     items_.push_back(item);
     indices += object.mesh.indices.size();
     vertices += object.mesh.positions.size();

@@ -250,10 +250,14 @@ bool Window::fullscreen() const { return glfwGetWindowMonitor(state_->window.get
 
 void Window::swap() { glfwSwapBuffers(state_->window.get()); }
 
-core::ImageRgba8 Window::screenshot() {
+void Window::bind() {
   state_->context.makeCurrent();
+  state_->context.gl().BindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+core::ImageRgba8 Window::screenshot() {
+  bind();
   const Gl& gl = state_->context.gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
   core::ImageRgba8 image = readRgba8(gl, width(), height());
   checkGl(gl, "taking a screenshot");
   return image;

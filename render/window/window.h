@@ -86,6 +86,8 @@ class Window {
   bool mouseCaptured() const;
   void setFullscreen(bool on);
   bool fullscreen() const;
+  /// Draws go to the window until another framebuffer is bound.
+  void bind();
   /// Shows what was drawn.
   void swap();
   /// What was drawn since the last swap, row 0 = top, alpha 255. Call before swap.
