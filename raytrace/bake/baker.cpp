@@ -16,6 +16,10 @@ namespace saccade::raytrace {
 namespace {
 
 constexpr float kLargestHalf = 65504;
+// Direct light has small errors and sharp edges: it is smoothed where its samples leave no doubt, and little.
+constexpr float kDirectConfidence = 0.4f;
+constexpr double kDirectEnough = 40000;  // 0.5 % noise
+constexpr int kDirectMaxRadius = 3;      // texels
 
 struct Preset {
   const char* name;
@@ -36,23 +40,45 @@ std::uint16_t toHalf(float value) {
   return glm::packHalf1x16(std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargestHalf));
 }
 
-/// One layer's irradiance, without gutters.
-std::vector<Vec3> bakeLayer(const World& world, const TexelMap& texels, const ParticleState& particles,
-                            int layer, const Preset& preset, const BakeOptions& options,
-                            const core::Progress& progress, ProgressShare share) {
-  const double middle = share.from + 0.8 * (share.to - share.from);
-  std::vector<Vec3> irradiance(texels.texelCount(), Vec3(0));
+/// Smoothed direct light of one layer.
+std::vector<DensityEstimate> bakeDirect(const World& world, const TexelMap& texels, int layer,
+                                        const Preset& preset, const BakeOptions& options,
+                                        const core::Progress& progress, ProgressShare share) {
+  const double middle = share.from + 0.9 * (share.to - share.from);
   DirectOptions direct;
   direct.samples = preset.directSamples;
   direct.seed = options.seed;
   direct.threads = options.threads;
-  directIrradiance(world, texels, layer, direct, progress, {share.from, middle}, irradiance);
+  std::vector<DirectEstimate> estimates(texels.texelCount());
+  directIrradiance(world, texels, layer, direct, progress, {share.from, middle}, estimates);
+  double watts = 0;
+  const FluxGrid flux = fluxOf(texels, estimates, watts);
+  DensityOptions smoothing;
+  smoothing.confidence = kDirectConfidence;
+  smoothing.enough = kDirectEnough;
+  smoothing.doubt = 0;
+  smoothing.maxRadius = kDirectMaxRadius;
+  smoothing.threads = options.threads;
+  std::vector<DensityEstimate> out(texels.texelCount());
+  estimateDensity(texels, flux, 0, watts, smoothing, progress, {middle, share.to}, out);
+  return out;
+}
+
+/// One layer's irradiance, without gutters.
+std::vector<Vec3> bakeLayer(const World& world, const TexelMap& texels, const ParticleState& particles,
+                            int layer, const Preset& preset, const BakeOptions& options,
+                            const core::Progress& progress, ProgressShare share) {
+  const double middle = share.from + 0.9 * (share.to - share.from);
+  const std::vector<DensityEstimate> direct =
+      bakeDirect(world, texels, layer, preset, options, progress, {share.from, middle});
   DensityOptions density;
   density.threads = options.threads;
   std::vector<DensityEstimate> indirect(texels.texelCount());
   estimateDensity(texels, particles.flux, layer, wattsPerWeight(world, particles.emitted), density, progress,
                   {middle, share.to}, indirect);
-  for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] += indirect[i].irradiance;
+  std::vector<Vec3> irradiance(texels.texelCount());
+  for (std::size_t i = 0; i < irradiance.size(); ++i)
+    irradiance[i] = direct[i].irradiance + indirect[i].irradiance;
   return irradiance;
 }
 

@@ -254,50 +254,66 @@ class Grower {
   std::vector<double> area_;
 };
 
-/// Turns the chart's plane so that its bounding rectangle is small, longer side along u.
-void fitRectangle(const Topology& mesh, Chart& chart) {
-  std::vector<glm::dvec2> points;
-  glm::dvec2 longest(1, 0);
+/// Directions to try as the rectangle's: those that most of the border runs along, then every 15 degrees. The
+/// smallest rectangle around a shape has a side along one of the border's edges.
+std::vector<double> candidateAngles(const Topology& mesh, const Chart& chart,
+                                    std::vector<std::uint32_t>& mark) {
+  constexpr int kBins = 90;  // of one degree; a quarter turn is the same rectangle
+  struct Bin {
+    double weight = 0, longest = 0, angle = 0;
+  };
+  std::array<Bin, kBins> bins;
+  for (const std::uint32_t t : chart.triangles) mark[t] = 0;
   for (const std::uint32_t t : chart.triangles) {
-    if (mesh.area(t) == 0) continue;
-    glm::dvec2 p[3];
-    for (int c = 0; c < 3; ++c) points.push_back(p[c] = chart.project(mesh.position(t, c)));
-    for (int c = 0; c < 3; ++c) {
-      const glm::dvec2 e = p[(c + 1) % 3] - p[c];
-      if (glm::dot(e, e) > glm::dot(longest, longest) || (t == chart.triangles[0] && c == 0)) longest = e;
+    for (int e = 0; e < 3 && mesh.area(t) > 0; ++e) {
+      const std::uint32_t n = mesh.neighbour(t, e);
+      if (n != kNone && mark[n] != kNone) continue;
+      const glm::dvec2 d = chart.project(mesh.position(t, (e + 1) % 3)) - chart.project(mesh.position(t, e));
+      const double length = glm::length(d), quarter = 0.5 * core::kPi;
+      const double turn = std::atan2(d.y, d.x) / quarter, angle = (turn - std::floor(turn)) * quarter;
+      Bin& bin = bins[std::min(static_cast<int>(angle / quarter * kBins), kBins - 1)];
+      bin.weight += length;
+      if (length > bin.longest) {
+        bin.longest = length;
+        bin.angle = angle;
+      }
     }
   }
-  constexpr int kAngles = 9;  // the longest edge's own direction first, then every 10 degrees
-  const double start = std::atan2(longest.y, longest.x);
-  double bestArea = 0;
+  for (const std::uint32_t t : chart.triangles) mark[t] = kNone;
+  std::stable_sort(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.weight > b.weight; });
+  std::vector<double> angles;
+  for (int i = 0; i < 4; ++i) angles.push_back(bins[i].angle);
+  for (int i = 0; i < 6; ++i) angles.push_back(i * core::kPi / 12);
+  return angles;
+}
+
+/// Turns the chart's plane so that its bounding rectangle is small, longer side along u.
+void fitRectangle(const Topology& mesh, Chart& chart, std::vector<std::uint32_t>& mark) {
+  std::vector<glm::dvec2> points;
+  for (const std::uint32_t t : chart.triangles) {
+    for (int c = 0; c < 3 && mesh.area(t) > 0; ++c) points.push_back(chart.project(mesh.position(t, c)));
+  }
+  constexpr double kWorthTurning = 0.98;  // of the area: earlier candidates win ties
+  double bestArea = core::kInfinity;
   glm::dvec2 best(1, 0);
-  for (int i = 0; i < kAngles; ++i) {
-    const double angle = start + i * (0.5 * core::kPi / kAngles);
+  for (const double angle : candidateAngles(mesh, chart, mark)) {
     const glm::dvec2 x(std::cos(angle), std::sin(angle)), y(-x.y, x.x);
-    glm::dvec2 lo(0), hi(0);
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const glm::dvec2 q(glm::dot(points[k], x), glm::dot(points[k], y));
-      lo = k ? glm::min(lo, q) : q;
-      hi = k ? glm::max(hi, q) : q;
+    glm::dvec2 lo(core::kInfinity), hi(-core::kInfinity);
+    for (const glm::dvec2& p : points) {
+      const glm::dvec2 q(glm::dot(p, x), glm::dot(p, y));
+      lo = glm::min(lo, q);
+      hi = glm::max(hi, q);
     }
     const glm::dvec2 e = hi - lo;
-    if (i > 0 && !(e.x * e.y < 0.98 * bestArea)) continue;
+    if (points.empty() || !(e.x * e.y < kWorthTurning * bestArea)) continue;
     bestArea = e.x * e.y;
-    best = x;
-    if (e.y > e.x) best = y;
+    best = e.y > e.x ? y : x;
+    chart.lo = e.y > e.x ? glm::dvec2(lo.y, -hi.x) : lo;
+    chart.hi = e.y > e.x ? glm::dvec2(hi.y, -lo.x) : hi;
   }
   const glm::dvec3 u = best.x * chart.u + best.y * chart.v;
   chart.v = -best.y * chart.u + best.x * chart.v;
   chart.u = u;
-  bool first = true;
-  for (const std::uint32_t t : chart.triangles) {
-    for (int c = 0; c < 3 && mesh.area(t) > 0; ++c) {
-      const glm::dvec2 q = chart.project(mesh.position(t, c));
-      chart.lo = first ? q : glm::min(chart.lo, q);
-      chart.hi = first ? q : glm::max(chart.hi, q);
-      first = false;
-    }
-  }
 }
 
 /// Whether the projection covers some place twice (a spiral ramp): a cell of a grid is filled beyond 1.
@@ -361,7 +377,7 @@ std::vector<Chart> clusterMesh(const core::Mesh& mesh) {
   std::vector<Chart> pending = Grower(topology).grow(mark), done;
   for (std::size_t i = 0; i < pending.size(); ++i) {
     Chart chart = std::move(pending[i]);
-    fitRectangle(topology, chart);
+    fitRectangle(topology, chart, mark);
     const glm::dvec2 extent = chart.hi - chart.lo;
     const double rectangle = extent.x * extent.y;
     const bool hollow = chart.triangles.size() > 1 && rectangle > worthHalving &&

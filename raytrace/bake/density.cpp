@@ -10,6 +10,7 @@ namespace {
 
 /// Window half sides in texels, the growing sequence that is tried.
 constexpr std::array<int, 15> kRadii = {0, 1, 2, 3, 4, 6, 8, 11, 16, 22, 32, 45, 64, 90, 128};
+constexpr std::uint8_t kNoRadius = 255;  // no surface there
 /// Sums within fewer effective particles than this have no usable error of their own.
 constexpr double kFew = 6;
 
@@ -81,8 +82,8 @@ std::size_t chooseRadius(const SummedArea& sums, const ChartRect& chart, int x, 
   for (std::size_t i = 0; i < kRadii.size() && kRadii[i] <= options.maxRadius; ++i) {
     const WindowSum sum = sums.window(chart, x, y, kRadii[i]);
     const double mean = sum.luminance() / sum.area;
-    // One particle of weight 1 more than came: few or no particles do not pass for certainty.
-    const double error = options.confidence * std::sqrt(sum.squared + 1) / sum.area;
+    // Few or no particles do not pass for certainty.
+    const double error = options.confidence * std::sqrt(sum.squared + options.doubt) / sum.area;
     const double count = sum.effectiveCount();
     if (mean - error > high || mean + error < low) break;
     low = std::max(low, mean - error);
@@ -91,6 +92,21 @@ std::size_t chooseRadius(const SummedArea& sums, const ChartRect& chart, int x, 
     if (count >= options.enough || kRadii[i] >= longest) break;
   }
   return best;
+}
+
+/// Median of the widths chosen in the 3 x 3 texels around (x, y) that lie in the chart.
+std::size_t medianRadius(const std::vector<std::uint8_t>& chosen, int size, const ChartRect& chart, int x,
+                         int y) {
+  std::array<std::uint8_t, 9> near{};
+  std::size_t count = 0;
+  for (int ny = std::max(chart.y0, y - 1); ny < std::min(chart.y1, y + 2); ++ny) {
+    for (int nx = std::max(chart.x0, x - 1); nx < std::min(chart.x1, x + 2); ++nx) {
+      const std::uint8_t r = chosen[static_cast<std::size_t>(ny) * static_cast<std::size_t>(size) + nx];
+      if (r != kNoRadius) near[count++] = r;
+    }
+  }
+  std::nth_element(near.begin(), near.begin() + count / 2, near.begin() + count);
+  return near[count / 2];
 }
 
 /// A stack of three windows, wide to narrow: near enough to a bell to leave no edges of its own.
@@ -112,22 +128,54 @@ DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, 
 
 }  // namespace
 
+FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, double& watts) {
+  double total = 0;
+  for (std::size_t i = 0; i < direct.size(); ++i)
+    total += core::luminance(direct[i].irradiance) * texels.area(i);
+  // The mean weight is 1, so sums stay below the number of texels.
+  watts = total > 0 ? total / static_cast<double>(direct.size()) : 1;
+  // Clamped, a sum of squares cannot overflow; too small an error only keeps a window small.
+  const double largestSquare = 0x1p33 / static_cast<double>(direct.size());
+  FluxGrid flux(direct.size(), 1);
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    const double perWatt = texels.area(i) / watts;
+    FluxGrid::Cell& cell = flux.cell(i, 0);
+    for (int c = 0; c < 3; ++c) {
+      cell.rgb[c] = static_cast<std::uint64_t>(direct[i].irradiance[c] * perWatt * FluxGrid::kUnitsPerWeight);
+    }
+    const double square = std::min(direct[i].variance * perWatt * perWatt, largestSquare);
+    cell.squared = static_cast<std::uint64_t>(square * FluxGrid::kUnitsPerWeight);
+  }
+  return flux;
+}
+
 void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int layer, double watts,
                      const DensityOptions& options, const core::Progress& progress, ProgressShare share,
                      std::span<DensityEstimate> out) {
   const SummedArea sums(texels, flux, layer);
-  parallelFor(options.threads, static_cast<std::size_t>(texels.size()), progress, share,
-              [&](std::size_t row) {
-                for (int x = 0; x < texels.size(); ++x) {
-                  const std::size_t texel =
-                      row * static_cast<std::size_t>(texels.size()) + static_cast<std::size_t>(x);
-                  if (texels.chartOf(texel) < 0 || !(texels.area(texel) > 0)) continue;
-                  const ChartRect& chart = texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))];
-                  if (layer == 1 && !chart.doubleSided) continue;
-                  const int y = static_cast<int>(row);
-                  out[texel] = estimate(sums, chart, x, y, chooseRadius(sums, chart, x, y, options), watts);
-                }
-              });
+  const double middle = 0.5 * (share.from + share.to);
+  // The chosen widths are themselves noisy: a texel takes the median of its neighbourhood's.
+  std::vector<std::uint8_t> chosen(texels.texelCount(), kNoRadius);
+  const auto forEachTexel = [&](std::size_t row, auto&& visit) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < texels.size(); ++x) {
+      const std::size_t texel = row * static_cast<std::size_t>(texels.size()) + static_cast<std::size_t>(x);
+      if (texels.chartOf(texel) < 0 || !(texels.area(texel) > 0)) continue;
+      const ChartRect& chart = texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))];
+      if (layer == 0 || chart.doubleSided) visit(texel, chart, x, y);
+    }
+  };
+  const auto rows = static_cast<std::size_t>(texels.size());
+  parallelFor(options.threads, rows, progress, {share.from, middle}, [&](std::size_t row) {
+    forEachTexel(row, [&](std::size_t texel, const ChartRect& chart, int x, int y) {
+      chosen[texel] = static_cast<std::uint8_t>(chooseRadius(sums, chart, x, y, options));
+    });
+  });
+  parallelFor(options.threads, rows, progress, {middle, share.to}, [&](std::size_t row) {
+    forEachTexel(row, [&](std::size_t texel, const ChartRect& chart, int x, int y) {
+      out[texel] = estimate(sums, chart, x, y, medianRadius(chosen, texels.size(), chart, x, y), watts);
+    });
+  });
 }
 
 }  // namespace saccade::raytrace

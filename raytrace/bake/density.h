@@ -11,6 +11,7 @@
 #include <span>
 
 #include "core/progress.h"
+#include "raytrace/bake/direct.h"
 #include "raytrace/bake/parallel.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
@@ -18,8 +19,9 @@
 namespace saccade::raytrace {
 
 struct DensityOptions {
-  float confidence = 1.6f;  ///< half width of the confidence intervals in standard errors
-  double enough = 4000;     ///< effective particles beyond which a window does not grow (1.6 % noise)
+  float confidence = 2.2f;  ///< half width of the confidence intervals in standard errors
+  double enough = 4000;     ///< (mean / standard error)^2 beyond which a window does not grow: 1.6 % noise
+  double doubt = 1;         ///< added to the sum of squared weights: so many particles may have been missed
   int maxRadius = 96;       ///< texels
   int threads = 0;          ///< 0 = inline
 };
@@ -29,6 +31,11 @@ struct DensityEstimate {
   Vec3 irradiance{0};        ///< W/m^2
   float relativeError = -1;  ///< one standard error of the luminance over itself; -1 where no particle came
 };
+
+/// Flux that stands for per-texel estimates with errors of their own, so that direct light's noise is
+/// smoothed by the same rule: weight = irradiance x area / `watts` (returned). For estimateDensity with doubt
+/// 0.
+FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, double& watts);
 
 /// Estimates for the layer's texels with surface; others are left alone. `watts`: wattsPerWeight. Same bits
 /// for any number of threads. Throws core::Error when stopped.

@@ -38,6 +38,7 @@ class FluxGrid {
 
   /// Any thread, concurrently. weight = flux / mean particle's flux.
   void add(std::size_t texel, int layer, const Vec3& weight);
+  Cell& cell(std::size_t texel, int layer) { return cells_[layer * texels_ + texel]; }
   const Cell& cell(std::size_t texel, int layer) const { return cells_[layer * texels_ + texel]; }
 
  private:
