@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/viewer/panel.h"
 #include "core/image_io.h"
 #include "tests/unit/app/fixtures.h"
 
@@ -26,10 +28,11 @@ std::string slurp(const std::filesystem::path& file) {
 }
 
 /// Runs `saccade ARGUMENTS` through the shell, with its own cache folder.
-Ran saccade(const std::string& arguments) {
+Ran saccade(const std::string& arguments, const std::string& environment = "") {
   const std::filesystem::path errors = tests::temporaryFolder() / "stderr.txt";
-  const std::string command = "XDG_CACHE_HOME='" + (tests::temporaryFolder() / "cache").string() +
-                              "' '" SACCADE_BINARY "' " + arguments + " 2>'" + errors.string() + "'";
+  const std::string command = environment + "XDG_CACHE_HOME='" +
+                              (tests::temporaryFolder() / "cache").string() + "' '" SACCADE_BINARY "' " +
+                              arguments + " 2>'" + errors.string() + "'";
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 4096> buffer{};
@@ -166,6 +169,37 @@ TEST(Cli, WalkOffScreenWritesFramesAndStats) {
   const nlohmann::json stats = nlohmann::json::parse(slurp(output("walk.json")));
   EXPECT_TRUE(stats["converged"].get<bool>());
   EXPECT_EQ(stats["frames"], 11);
+}
+
+TEST(Cli, TheWindowShowsThePictureAndThePanel) {
+  if (!std::getenv("DISPLAY")) GTEST_SKIP() << "no display; run under xvfb-run";
+  const std::filesystem::path shot = output("window.png");
+  const Ran ran =
+      saccade("walk " + kCornell + " --quality preview --size 400x400 --exit-after 2 --ui-screenshot " +
+              quoted(shot) + " --stats " + quoted(output("window.json")));
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const core::ImageRgba8 picture = core::readImage8(shot);
+  ASSERT_EQ(picture.width(), 400 + app::kPanelWidth);
+  ASSERT_EQ(picture.height(), 400);
+  // Cornell's walls: red on the left, green on the right; the panel is dark with bright text.
+  const core::Rgba8 left = picture.at(8, 200), right = picture.at(391, 200);
+  EXPECT_GT(left.r, left.g + 30);
+  EXPECT_GT(right.g, right.r + 30);
+  int bright = 0;
+  for (int y = 0; y < 400; ++y) {
+    for (int x = 400; x < picture.width(); ++x) bright += picture.at(x, y).g > 200 ? 1 : 0;
+  }
+  EXPECT_GT(bright, 500);
+  const nlohmann::json stats = nlohmann::json::parse(slurp(output("window.json")));
+  EXPECT_EQ(stats["context"], "window");
+  EXPECT_GT(stats["samples"]["traced"].get<int>(), 0);
+}
+
+TEST(Cli, WithoutADisplayTheWindowSaysWhatToDo) {
+  const Ran ran = saccade("walk " + kCornell + " --quality preview", "DISPLAY= WAYLAND_DISPLAY= ");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(errorLines(ran.err), 1) << ran.err;
+  EXPECT_NE(ran.err.find("--headless"), std::string::npos) << ran.err;
 }
 
 TEST(Cli, CompareTellsSizesAndKindsApart) {
