@@ -131,7 +131,7 @@ Shapes makeShapes(GlbWriter& glb) {
   s.ball = glb.addGeometry(lathe(sphereProfile(1, 28), 44));
   s.stone = glb.addGeometry(cutStone(0.18f, 0.26f, 12));
   for (int k = 0; k < 4; ++k)
-    s.vases[static_cast<std::size_t>(k)] = glb.addGeometry(vase(k, 32), true, k == 1);
+    s.vases[static_cast<std::size_t>(k)] = glb.addGeometry(vase(k, 32), k < 3, k == 1);
   s.plinth = glb.addGeometry(roundedBox({0, 0.5f, 0}, {0.52f, 1.0f, 0.52f}, 0.012f, 1, 1), true);
   s.pedestal = glb.addGeometry(roundedBox({0, 0.45f, 0}, {0.74f, 0.9f, 0.74f}, 0.012f, 1, 1), true);
   return s;

@@ -21,7 +21,7 @@ void addAisle(GlbWriter& glb) {
     slab.metallicRoughnessTexture =
         glb.addJpeg(std::string(name) + " roughness",
                     metallicRoughnessMap(
-                        128, 0, [&](Vec2 uv) { return mottledColor(uv, Vec3(0.09f), 0.4f, seed + 5).x; }),
+                        128, 0, [&](Vec2 uv) { return mottledColor(uv, Vec3(0.055f), 0.4f, seed + 5).x; }),
                     85);
     return glb.addMaterial(slab);
   };
@@ -34,7 +34,7 @@ void addAisle(GlbWriter& glb) {
   for (int k = 0; k < kSlabs; ++k)
     glb.addNode("aisle slab", slab, k % 2 == 0 ? black : green,
                 standing({0, 0, kL - (static_cast<float>(k) + 0.5f) * length}));
-  const int brass = glb.addMaterial(metal("floor brass", kBrass, 0.3f));
+  const int brass = glb.addMaterial(metal("floor brass", kBrass, 0.15f));
   const int rail = glb.addGeometry(panel({0, 0, kL}, {strip, 0, 0}, {0, 0, -2 * kL}));
   glb.addNode("brass strip", rail, brass, standing({-kAisleHalfWidth, 0, 0}));
   glb.addNode("brass strip", rail, brass, standing({half, 0, 0}));
@@ -110,15 +110,15 @@ void addWalls(GlbWriter& glb) {
 /// Six skylights over the aisle and six panels over the sides, all facing down.
 void addCeiling(GlbWriter& glb) {
   const int white = glb.addMaterial(lambert("ceiling", Vec3(.80f, .78f, .73f)));
-  const int bars = glb.addMaterial(lambert("skylight bars", Vec3(.25f, .26f, .27f)));
+  const int bars = glb.addMaterial(lambert("skylight bars", Vec3(.05f)));
   glb.addNode("ceiling", glb.addGeometry(panel({-kW, kH, -kL}, {2 * kW, 0, 0}, {0, 0, 2 * kL})), white);
   const float w = 2.6f, l = 2.2f, y = kH - 0.04f;
   const int light = glb.addGeometry(panel({-w / 2, y, -l / 2}, {w, 0, 0}, {0, 0, l}));
   MeshData grid;
   for (int k = -1; k <= 1; ++k)
-    grid.append(box({0.5f * w * static_cast<float>(k), y - 0.04f, 0}, {0.05f, 0.1f, l + 0.05f}));
+    grid.append(box({0.5f * w * static_cast<float>(k), y - 0.02f, 0}, {0.05f, 0.05f, l + 0.05f}));
   for (int k = -2; k <= 2; ++k)
-    grid.append(box({0, y - 0.035f, 0.25f * l * static_cast<float>(k)}, {w, 0.08f, 0.04f}));
+    grid.append(box({0, y - 0.015f, 0.25f * l * static_cast<float>(k)}, {w, 0.04f, 0.04f}));
   const int gridShape = glb.addGeometry(grid),
             beam = glb.addGeometry(box({0, kH - 0.13f, 0}, {5.6f, 0.26f, 0.34f}));
   const int sky = glb.addMaterial(emitter("skylight", kSkylight)),

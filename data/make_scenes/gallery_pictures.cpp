@@ -66,7 +66,7 @@ Hanger::Hanger(GlbWriter& glb) : glb_(glb) {
     if (k < 3)
       m.normalTexture =
           glb.addPng(m.name + " carving", normalMap(
-                                              96, [&](Vec2 uv) { return carvedHeight(uv, style); }, 0.02f));
+                                              96, [&](Vec2 uv) { return carvedHeight(uv, style); }, 0.014f));
     m.metallicRoughnessTexture = glb.addJpeg(
         m.name + " wear",
         metallicRoughnessMap(

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "data/make_scenes/shapes.h"
 
@@ -145,86 +146,92 @@ MeshData crown() {
     const Vec3 at(0.325f * std::cos(angle), k % 2 == 0 ? 0.30f : 0.285f, 0.325f * std::sin(angle));
     mesh.append(lathe(sphereProfile(k % 2 == 0 ? 0.045f : 0.03f, 8), 12), glm::translate(Mat4(1), at));
   }
-  return mesh;
+  return grounded(std::move(mesh));
 }
 
 MeshData bust() {
-  return lathe(splineProfile({{0, 0},
-                              {0.16f, 0.0f},
-                              {0.17f, 0.05f},
-                              {0.12f, 0.09f},
-                              {0.22f, 0.20f},
-                              {0.25f, 0.32f},
-                              {0.18f, 0.42f},
-                              {0.085f, 0.48f},
-                              {0.08f, 0.54f},
-                              {0.13f, 0.62f},
-                              {0.155f, 0.74f},
-                              {0.12f, 0.86f},
-                              {0, 0.91f}},
-                             3),
-               30);
+  return grounded(lathe(splineProfile({{0, 0},
+                                       {0.16f, 0.0f},
+                                       {0.17f, 0.05f},
+                                       {0.12f, 0.09f},
+                                       {0.22f, 0.20f},
+                                       {0.25f, 0.32f},
+                                       {0.18f, 0.42f},
+                                       {0.085f, 0.48f},
+                                       {0.08f, 0.54f},
+                                       {0.13f, 0.62f},
+                                       {0.155f, 0.74f},
+                                       {0.12f, 0.86f},
+                                       {0, 0.91f}},
+                                      3),
+                        30));
 }
 
+namespace {
+
+/// Up the outside, over the rim, down the inside.
+const std::array<std::vector<Vec2>, 4> kVaseOutlines{{
+    {{0, 0},
+     {0.12f, 0},
+     {0.14f, 0.02f},
+     {0.24f, 0.30f},
+     {0.22f, 0.48f},
+     {0.09f, 0.62f},
+     {0.08f, 0.70f},
+     {0.13f, 0.78f},
+     {0.12f, 0.785f},
+     {0.068f, 0.70f},
+     {0.078f, 0.62f},
+     {0.205f, 0.47f},
+     {0.225f, 0.30f},
+     {0.12f, 0.04f},
+     {0, 0.03f}},
+    {{0, 0},
+     {0.10f, 0},
+     {0.11f, 0.03f},
+     {0.27f, 0.14f},
+     {0.33f, 0.27f},
+     {0.34f, 0.32f},
+     {0.325f, 0.325f},
+     {0.31f, 0.27f},
+     {0.25f, 0.16f},
+     {0.10f, 0.06f},
+     {0, 0.05f}},
+    {{0, 0},
+     {0.13f, 0},
+     {0.14f, 0.02f},
+     {0.15f, 0.2f},
+     {0.21f, 0.44f},
+     {0.26f, 0.62f},
+     {0.20f, 0.74f},
+     {0.15f, 0.78f},
+     {0.17f, 0.83f},
+     {0.155f, 0.832f},
+     {0.135f, 0.78f},
+     {0.19f, 0.72f},
+     {0.245f, 0.61f},
+     {0.19f, 0.44f},
+     {0.13f, 0.2f},
+     {0.11f, 0.04f},
+     {0, 0.03f}},
+    {{0, 0},
+     {0.15f, 0},
+     {0.16f, 0.02f},
+     {0.05f, 0.10f},
+     {0.045f, 0.24f},
+     {0.20f, 0.36f},
+     {0.24f, 0.50f},
+     {0.22f, 0.70f},
+     {0.205f, 0.70f},
+     {0.225f, 0.50f},
+     {0.185f, 0.375f},
+     {0, 0.31f}},
+}};
+
+}  // namespace
+
 MeshData vase(int shape, int slices) {
-  static const std::array<std::vector<Vec2>, 4> kShapes{{
-      {{0, 0},
-       {0.12f, 0},
-       {0.14f, 0.02f},
-       {0.24f, 0.30f},
-       {0.22f, 0.48f},
-       {0.09f, 0.62f},
-       {0.08f, 0.70f},
-       {0.13f, 0.78f},
-       {0.12f, 0.785f},
-       {0.068f, 0.70f},
-       {0.078f, 0.62f},
-       {0.205f, 0.47f},
-       {0.225f, 0.30f},
-       {0.12f, 0.04f},
-       {0, 0.03f}},
-      {{0, 0},
-       {0.10f, 0},
-       {0.11f, 0.03f},
-       {0.27f, 0.14f},
-       {0.33f, 0.27f},
-       {0.34f, 0.32f},
-       {0.325f, 0.325f},
-       {0.31f, 0.27f},
-       {0.25f, 0.16f},
-       {0.10f, 0.06f},
-       {0, 0.05f}},
-      {{0, 0},
-       {0.13f, 0},
-       {0.14f, 0.02f},
-       {0.15f, 0.2f},
-       {0.21f, 0.44f},
-       {0.26f, 0.62f},
-       {0.20f, 0.74f},
-       {0.15f, 0.78f},
-       {0.17f, 0.83f},
-       {0.155f, 0.832f},
-       {0.135f, 0.78f},
-       {0.19f, 0.72f},
-       {0.245f, 0.61f},
-       {0.19f, 0.44f},
-       {0.13f, 0.2f},
-       {0.11f, 0.04f},
-       {0, 0.03f}},
-      {{0, 0},
-       {0.15f, 0},
-       {0.16f, 0.02f},
-       {0.05f, 0.10f},
-       {0.045f, 0.24f},
-       {0.20f, 0.36f},
-       {0.24f, 0.50f},
-       {0.22f, 0.70f},
-       {0.205f, 0.70f},
-       {0.225f, 0.50f},
-       {0.185f, 0.375f},
-       {0, 0.31f}},
-  }};
-  return lathe(splineProfile(kShapes[static_cast<std::size_t>(shape)], 2), slices);
+  return grounded(lathe(splineProfile(kVaseOutlines[static_cast<std::size_t>(shape)], 2), slices));
 }
 
 MeshData column(float height, float radius) {

@@ -11,6 +11,7 @@
 namespace saccade::data {
 namespace {
 
+constexpr float kHalfRoom = 1.6f;
 constexpr float kTableTop = 0.75f;
 constexpr float kHover = 2e-4f;  // air between a vessel and the table
 
@@ -23,7 +24,7 @@ void addRoom(GlbWriter& glb) {
                                  80);
   const int plaster = glb.addMaterial(lambert("plaster", {0.70f, 0.66f, 0.58f}));
   const int wallpaper = glb.addMaterial(lambert("wall paint", {0.26f, 0.38f, 0.42f}));
-  const float w = 2.0f, h = 2.7f;
+  const float w = kHalfRoom, h = 2.5f;
   const Vec3 x(2 * w, 0, 0), y(0, h, 0), z(0, 0, 2 * w);
   glb.addNode("floor", glb.addGeometry(panel({-w, 0, w}, x, -z, Vec2(3)), true),
               glb.addMaterial(lambert("floor", Vec3(1), boards)));
@@ -38,25 +39,28 @@ void addRoom(GlbWriter& glb) {
 
 /// A window with four panes in the left wall, and a lamp under the ceiling.
 void addLights(GlbWriter& glb) {
-  const int daylight = glb.addMaterial(emitter("daylight", {13.0f, 14.5f, 17.0f}));
+  const int daylight = glb.addMaterial(emitter("daylight", {9.4f, 10.5f, 12.3f}));
   const int pane = glb.addGeometry(panel({0, 0, 0}, {0, 0, -0.52f}, {0, 0.58f, 0}));
   for (int k = 0; k < 4; ++k)
     glb.addNode("window pane", pane, daylight,
-                standing({-1.985f, 1.05f + 0.64f * static_cast<float>(k / 2),
+                standing({-kHalfRoom + 0.015f, 1.05f + 0.64f * static_cast<float>(k / 2),
                           0.30f + 0.58f * static_cast<float>(k % 2)}));
   const int bars = glb.addMaterial(lambert("window bars", {0.80f, 0.79f, 0.75f}));
-  glb.addNode("window cross", glb.addGeometry(box({-1.97f, 1.66f, 0.33f}, {0.05f, 1.36f, 0.06f})), bars);
-  glb.addNode("window transom", glb.addGeometry(box({-1.97f, 1.66f, 0.33f}, {0.04f, 0.06f, 1.24f})), bars);
-  glb.addNode("window sill", glb.addGeometry(box({-1.93f, 1.0f, 0.33f}, {0.14f, 0.05f, 1.4f})), bars);
-  glb.addNode("ceiling lamp", glb.addGeometry(panel({-0.35f, 2.66f, -0.35f}, {0.7f, 0, 0}, {0, 0, 0.7f})),
-              glb.addMaterial(emitter("lamp", {9.0f, 7.4f, 5.2f})));
+  glb.addNode("window cross", glb.addGeometry(box({-kHalfRoom + 0.03f, 1.66f, 0.33f}, {0.05f, 1.36f, 0.06f})),
+              bars);
+  glb.addNode("window transom",
+              glb.addGeometry(box({-kHalfRoom + 0.03f, 1.66f, 0.33f}, {0.04f, 0.06f, 1.24f})), bars);
+  glb.addNode("window sill", glb.addGeometry(box({-kHalfRoom + 0.07f, 1.0f, 0.33f}, {0.14f, 0.05f, 1.4f})),
+              bars);
+  glb.addNode("ceiling lamp", glb.addGeometry(panel({-0.35f, 2.46f, -0.35f}, {0.7f, 0, 0}, {0, 0, 0.7f})),
+              glb.addMaterial(emitter("lamp", {6.4f, 5.3f, 3.8f})));
 }
 
 void addTable(GlbWriter& glb) {
   const int wood = glb.addJpeg("oak",
                                paint(768, 768,
                                      [](Vec2 uv) {
-                                       return boardColor(uv, {9, 0, 0.72f}, {0.63f, 0.43f, 0.25f}, 5);
+                                       return boardColor(uv, {9, 0, 0.72f}, {0.58f, 0.42f, 0.28f}, 5);
                                      }),
                                84);
   // Varnished: a dielectric lobe of 4 %, below the threshold, so the table stays in the base layer.
@@ -144,10 +148,10 @@ GlbWriter makeTable() {
   glb.addNode("tumbler", glb.addGeometry(tumbler()), clear, at(0.075f, 0.085f, 0));
   glb.addNode("wine glass", glb.addGeometry(wineGlass()), clear, at(0.045f, -0.075f, 0));
   glb.addNode("mug", glb.addGeometry(mug()),
-              glb.addMaterial(glazed("glazed ceramic", {0.62f, 0.14f, 0.08f}, -1, 2.2f, 0.08f)),
+              glb.addMaterial(glazed("glazed ceramic", {0.05f, 0.25f, 0.30f}, -1, 2.2f, 0.08f)),
               at(-0.095f, 0.02f, 205));
   glb.addCamera({"main", {0.16f, 1.01f, 0.60f}, {-0.005f, 0.825f, 0.0f}, {0, 1, 0}, 34});
-  glb.addCamera({"room", {1.5f, 1.5f, 1.7f}, {-0.2f, 0.8f, -0.2f}, {0, 1, 0}, 60});
+  glb.addCamera({"room", {1.3f, 1.45f, 1.4f}, {-0.2f, 0.8f, -0.2f}, {0, 1, 0}, 60});
   return glb;
 }
 

@@ -180,11 +180,11 @@ float carvedHeight(Vec2 uv, int style) {
   const float u = 2 * kPi * uv.x, v = 2 * kPi * uv.y;
   switch (style) {
     case 0:
-      return 0.5f + 0.5f * std::sin(8 * u) * std::sin(v);  // beads
+      return 0.5f + 0.5f * std::sin(4 * u) * std::sin(v);  // beads
     case 1:
-      return 0.5f + 0.5f * std::sin(6 * u + 2 * std::sin(v)) * (0.5f - 0.5f * std::cos(v));  // rope
+      return 0.5f + 0.5f * std::sin(3 * u + 2 * std::sin(v)) * (0.5f - 0.5f * std::cos(v));  // rope
     default:
-      return std::pow(std::abs(std::sin(4 * u + std::cos(v))), 0.6f) * (0.5f - 0.5f * std::cos(v));  // leaves
+      return std::pow(std::abs(std::sin(2 * u + std::cos(v))), 0.6f) * (0.5f - 0.5f * std::cos(v));  // leaves
   }
 }
 
