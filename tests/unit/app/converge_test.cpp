@@ -62,6 +62,19 @@ TEST_P(Converge, EqualsRayTracedOnAnyNumberOfThreads) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Converge,
                          testing::Combine(testing::ValuesIn(kScenes), testing::Values("osmesa", "egl")));
 
+TEST(ManyObjects, AThousandIdsConvergeToRayTraced) {
+  const app::Workspace& workspace = tests::workspaceOf(tests::bundled("gallery-1000.glb"));
+  app::Headless gl(tests::runOn("osmesa"), workspace);
+  FrameLoop loop(workspace, *gl.renderer, {.threads = 2});
+  loop.step(workspace.scene.cameras[0], {512, 512}, FrameBudget::untilConverged());
+  ASSERT_TRUE(loop.converged());
+  int visible = 0;
+  for (const core::ObjectExtent& extent : loop.frame().extents) visible += extent.pixels > 0 ? 1 : 0;
+  EXPECT_GE(visible, 1000);
+  EXPECT_EQ(loop.stats().samplesTraced, loop.frame().nonDiffusePixels);
+  EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace, loop.frame())), 0);
+}
+
 /// cornell, off screen, small.
 class LoopTest : public testing::Test {
  protected:
