@@ -66,6 +66,7 @@ class Bsdf {
 
   /// The specular lobes are deltas.
   bool delta() const { return delta_; }
+  float alpha() const { return alpha_; }  ///< GGX
   bool hasSpecular() const { return specularAny_; }
   bool hasDiffuse() const { return diffuseAny_; }
   bool transmits() const { return glass_ > 0; }

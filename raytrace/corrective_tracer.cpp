@@ -1,6 +1,7 @@
 #include "raytrace/corrective_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -20,6 +21,9 @@ constexpr float kSplitWeight = 0.01f;
 constexpr float kRouletteWeight = 0.1f;
 /// Shadow rays whose contribution to the pixel cannot exceed this (radiance) are drawn likewise.
 constexpr float kFaintLight = 0.02f;
+/// A lobe below this GGX alpha finds lamps by itself: a light sample falls into it too seldom to pay.
+/// Punctual lights have no size and are sampled for every rough lobe.
+constexpr float kNarrowAlpha = 0.04f;
 /// Blended layers that one ray passes.
 constexpr int kMaxLayers = 64;
 /// A point of the depth buffer that faces away is shaded as if seen this far above its horizon (a cosine).
@@ -48,10 +52,35 @@ class Walk {
   /// Radiance that the lobes other than Lambert send back along the ray. `weight`: of this branch in the
   /// pixel.
   Vec3 specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
-  /// Radiance along a ray. `rough` is null for rays of deltas.
-  Vec3 incoming(Ray ray, int depth, float weight, const RoughRay* rough);
+  /// Radiance along a ray of a delta.
+  Vec3 incoming(const Ray& ray, int depth, float weight) {
+    Leg leg = send(ray);
+    approach(leg);
+    return received(leg, depth, weight, nullptr);
+  }
 
  private:
+  /// A ray and what it met. Rays of one hit are sent together, so that what they need later is on its way
+  /// from memory while others are traced.
+  struct Leg {
+    Ray ray;
+    Hit hit;
+    bool met = false;
+    float density = 0;  ///< rays times pdf; 0 when the lights were not sampled as well
+    Vec3 factor{0};
+  };
+  Leg send(const Ray& ray) {
+    Leg leg;
+    leg.ray = ray;
+    leg.met = world_.intersect(ray, leg.hit, counters_);
+    if (leg.met) prefetchHit(world_, leg.hit);
+    return leg;
+  }
+  void approach(const Leg& leg) const {
+    if (leg.met && world_.diffuse(leg.hit.object)) prefetchBaseLight(world_, leg.hit);
+  }
+  /// Radiance that comes back along a leg. `rough` is null for rays of deltas.
+  Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
   Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
   Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
@@ -72,11 +101,13 @@ float Walk::emissionWeight(const Hit& hit, const Vec3& direction, float distance
                         world_.lights().pdf(*rough->choice, hit.triangle, direction, distance));
 }
 
-Vec3 Walk::incoming(Ray ray, int depth, float weight, const RoughRay* rough) {
+Vec3 Walk::received(const Leg& leg, int depth, float weight, const RoughRay* rough) {
   Vec3 sum(0);
   float through = 1, travelled = 0;
-  Hit hit;
-  for (int layer = 0; layer < kMaxLayers && world_.intersect(ray, hit, counters_); ++layer) {
+  Ray ray = leg.ray;
+  Hit hit = leg.hit;
+  bool met = leg.met;
+  for (int layer = 0; layer < kMaxLayers && met; ++layer) {
     travelled += hit.t;
     float coverage = 1;
     Vec3 radiance(0), emitted(0);
@@ -97,6 +128,7 @@ Vec3 Walk::incoming(Ray ray, int depth, float weight, const RoughRay* rough) {
     through *= 1 - coverage;
     if (!(through > 0)) break;
     ray = makeSurface(world_, hit, ray.direction).leave(ray.direction);
+    met = world_.intersect(ray, hit, counters_);
   }
   return sum;
 }
@@ -131,12 +163,13 @@ Vec3 Walk::deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, fl
   const std::optional<BsdfSample> transmission = bsdf.deltaTransmission();
   const auto follow = [&](const BsdfSample& s, float chance) {
     const Vec3 factor = s.weight / chance;
-    return factor * incoming(surface.leave(s.direction), depth + 1, weight * largest(factor), nullptr);
+    return factor * incoming(surface.leave(s.direction), depth + 1, weight * largest(factor));
   };
   if (!transmission) return follow(reflection, 1);
   const float r = largest(reflection.weight), t = largest(transmission->weight);
-  if (depth < kSplitDepth && weight * std::min(r, t) > kSplitWeight)
+  if (depth < kSplitDepth && weight * std::min(r, t) > kSplitWeight) {
     return follow(reflection, 1) + follow(*transmission, 1);
+  }
   const float chance = r / (r + t);
   return sampler_.next1D() < chance ? follow(reflection, chance) : follow(*transmission, 1 - chance);
 }
@@ -145,24 +178,31 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
   const int count = depth == 0 ? options_.glossyRays : 1;
   const auto rays = static_cast<float>(count);
   // Inside a solid every light is behind its wall; only rays that leave find it.
-  const bool lights = !world_.lights().empty() && (surface.front || !surface.closed);
-  LightChoice choice;
-  Vec3 sum(0);
-  if (lights) {
-    choice = world_.lights().choose(surface.position);
-    sum = lightSample(surface, bsdf, choice, rays, weight);
-  }
+  const bool lights = (bsdf.alpha() >= kNarrowAlpha || world_.lights().hasPunctual()) &&
+                      !world_.lights().empty() && (surface.front || !surface.closed);
+  std::array<Leg, CorrectiveOptions::kMaxGlossyRays> legs;
+  int sent = 0;
   for (int i = 0; i < count; ++i) {
     Vec2 u = sampler_.next2D();
     u.x = (static_cast<float>(i) + u.x) / rays;
     const float uLobe = bsdf.transmits() ? sampler_.next1D() : 0;
     const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, kLobeSpecular);
     if (!s) continue;
-    const RoughRay rough{&choice, s->pdf * rays};
-    const bool plain = !lights || s->delta;
-    sum += s->weight / rays *
-           incoming(surface.leave(s->direction), depth + 1, weight * largest(s->weight) / rays,
-                    plain ? nullptr : &rough);
+    Leg& leg = legs[sent++] = send(surface.leave(s->direction));
+    leg.density = lights && !s->delta ? s->pdf * rays : 0;
+    leg.factor = s->weight / rays;
+  }
+  LightChoice choice;
+  Vec3 sum(0);
+  if (lights) {
+    choice = world_.lights().choose(surface.position);
+    sum = lightSample(surface, bsdf, choice, rays, weight);
+  }
+  for (int i = 0; i < sent; ++i) approach(legs[i]);
+  for (int i = 0; i < sent; ++i) {
+    const RoughRay rough{&choice, legs[i].density};
+    sum += legs[i].factor * received(legs[i], depth + 1, weight * largest(legs[i].factor),
+                                     legs[i].density > 0 ? &rough : nullptr);
   }
   return sum;
 }
@@ -187,15 +227,6 @@ Vec3 Walk::lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoi
   return contribution * world_.transmittance(shadowRay(surface, light), counters_);
 }
 
-/// The hit of a pixel's ray on the object that the frame names, or the object's point nearest to the depth
-/// buffer's (design fact 9). False when the object has no point at all.
-bool primaryHit(const World& world, const core::FrameSnapshot& frame, std::uint32_t object, Vec2 pixel,
-                float depth, Hit& hit, bool& fromDepth, RayCounters& counters) {
-  const Ray ray{frame.view.camera().eye, frame.view.direction(pixel), 0, core::kInfinity};
-  fromDepth = !world.intersectVisible(object, ray, hit, counters);
-  return !fromDepth || world.closestPoint(object, frame.view.unproject(pixel, depth), hit);
-}
-
 /// The direction under which a point from the depth buffer is shaded: it must face the eye.
 Vec3 facingDirection(const Hit& hit, const Vec3& direction) {
   const float length = glm::length(hit.ng);
@@ -212,46 +243,84 @@ bool finite(const Vec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && 
 CorrectiveTracer::CorrectiveTracer(const World& world, const CorrectiveOptions& options)
     : world_(world), options_(options) {
   options_.samplesPerPixel = std::max(1, options.samplesPerPixel);
-  options_.glossyRays = std::max(1, options.glossyRays);
+  options_.glossyRays = std::clamp(options.glossyRays, 1, CorrectiveOptions::kMaxGlossyRays);
+}
+
+/// The pixel's ray on the object that the frame names; where it misses, the object's point nearest to the
+/// depth buffer's (design fact 9).
+CorrectiveTracer::Primary CorrectiveTracer::aim(const core::FrameSnapshot& frame, Pixel pixel,
+                                                RayCounters& counters) const {
+  Primary primary;
+  const std::uint32_t object = world_.objectOfId(frame.idAt(pixel.x, pixel.y));
+  const Vec2 center(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
+  const Vec3 direction = frame.view.direction(center);
+  const Ray ray{frame.view.camera().eye, direction, 0, core::kInfinity};
+  primary.direction = glm::normalize(direction);
+  primary.found = world_.intersectVisible(object, ray, primary.hit, counters);
+  if (!primary.found) {
+    primary.fromDepth = true;
+    const float depth = frame.depth[frame.index(pixel.x, pixel.y)];
+    primary.found = world_.closestPoint(object, frame.view.unproject(center, depth), primary.hit);
+    if (primary.found) primary.direction = facingDirection(primary.hit, primary.direction);
+  }
+  if (primary.found) prefetchHit(world_, primary.hit);
+  return primary;
 }
 
 core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, int y, int level,
                                      RayCounters& counters) const {
-  const std::size_t index = frame.index(x, y);
+  return shade(frame, {x, y}, level, aim(frame, {x, y}, counters), counters);
+}
+
+void CorrectiveTracer::trace(const core::FrameSnapshot& frame, std::span<const Pixel> pixels, int level,
+                             RayCounters& counters, std::vector<core::Sample>& out) const {
+  constexpr std::size_t kAtOnce = 32, kAhead = 2;
+  std::array<Primary, kAtOnce> primaries;
+  for (std::size_t first = 0; first < pixels.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, pixels.size() - first);
+    for (std::size_t i = 0; i < count; ++i) primaries[i] = aim(frame, pixels[first + i], counters);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i + kAhead < count && primaries[i + kAhead].found)
+        prefetchBaseLight(world_, primaries[i + kAhead].hit);
+      out.push_back(shade(frame, pixels[first + i], level, primaries[i], counters));
+    }
+  }
+}
+
+core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, Pixel pixel, int level,
+                                     const Primary& primary, RayCounters& counters) const {
+  const Vec3& direction = primary.direction;
   core::Sample sample;
-  sample.x = x;
-  sample.y = y;
-  sample.id = frame.idAt(x, y);
+  sample.x = pixel.x;
+  sample.y = pixel.y;
+  sample.id = frame.idAt(pixel.x, pixel.y);
   sample.level = static_cast<std::uint8_t>(level);
-  const Vec2 pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-  Hit hit;
-  Vec3 direction = glm::normalize(frame.view.direction(pixel));
-  if (!primaryHit(world_, frame, world_.objectOfId(sample.id), pixel, frame.depth[index], hit,
-                  sample.fromDepth, counters)) {
-    sample.position = frame.view.unproject(pixel, frame.depth[index]);
+  sample.fromDepth = primary.fromDepth;
+  const float windowDepth = frame.depth[frame.index(pixel.x, pixel.y)];
+  if (!primary.found) {
+    const Vec2 center(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
+    sample.position = frame.view.unproject(center, windowDepth);
     sample.normal = -direction;
     sample.cosView = 1;
-    sample.viewDepth = frame.view.viewDepth(frame.depth[index]);
+    sample.viewDepth = frame.view.viewDepth(windowDepth);
     return sample;
   }
-  if (sample.fromDepth) direction = facingDirection(hit, direction);
-  const Surface surface = makeSurface(world_, hit, direction);
+  const Surface surface = makeSurface(world_, primary.hit, direction);
   const Bsdf bsdf(surface, -direction);
   sample.position = surface.position;
   sample.normal = surface.ns;
   sample.cosView = std::clamp(glm::dot(surface.ns, -direction), 0.0f, 1.0f);
-  sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(frame.depth[index]) : hit.t;
+  sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(windowDepth) : primary.hit.t;
 
   const float coverage = surface.point.coverage;
   Vec3 sum(0);
   for (int i = 0; i < options_.samplesPerPixel; ++i) {
     Walk walk(world_, options_,
-              core::PixelSampler(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+              core::PixelSampler(static_cast<std::uint32_t>(pixel.x), static_cast<std::uint32_t>(pixel.y),
                                  static_cast<std::uint64_t>(i), options_.seed),
               counters);
     if (coverage > 0 && !surface.material->unlit) sum += coverage * walk.specular(surface, bsdf, 0, coverage);
-    if (coverage < 1)
-      sum += (1 - coverage) * walk.incoming(surface.leave(direction), 1, 1 - coverage, nullptr);
+    if (coverage < 1) sum += (1 - coverage) * walk.incoming(surface.leave(direction), 1, 1 - coverage);
   }
   sum /= static_cast<float>(options_.samplesPerPixel);
   if (bsdf.hasDiffuse()) {

@@ -162,7 +162,9 @@ void Lights::addPunctual(const core::Scene& scene) {
         group.power = core::kPi * sceneRadius * sceneRadius * strength;
         break;
     }
-    if (group.power > 0 && std::isfinite(group.power)) groups_.push_back(std::move(group));
+    if (!(group.power > 0) || !std::isfinite(group.power)) continue;
+    groups_.push_back(std::move(group));
+    hasPunctual_ = true;
   }
 }
 

@@ -68,6 +68,7 @@ class Lights {
   Lights(const core::Scene& scene, const World& world);
 
   bool empty() const { return groups_.empty(); }
+  bool hasPunctual() const { return hasPunctual_; }
   /// Emissive triangles, the order of TriangleRecord::light.
   std::size_t emissiveCount() const { return emissive_.size(); }
   std::uint32_t emissiveTriangle(std::size_t i) const { return emissive_[i].triangle; }
@@ -112,6 +113,7 @@ class Lights {
   const World& world_;
   std::vector<Emissive> emissive_;
   std::vector<Group> groups_;
+  bool hasPunctual_ = false;
   AliasTable groupTable_;  ///< by power
 };
 

@@ -170,4 +170,16 @@ BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   return light;
 }
 
+void prefetchHit(const World& world, const Hit& hit) {
+  __builtin_prefetch(&world.record(hit.triangle));
+  if (!world.diffuse(hit.object)) __builtin_prefetch(&world.shape(hit.triangle));
+}
+
+void prefetchBaseLight(const World& world, const Hit& hit) {
+  const TriangleRecord& record = world.record(hit.triangle);
+  const CompiledMaterial& m = world.materialOf(hit.object);
+  if (m.baseColorTexture) m.baseColorTexture.prefetch(interpolate(record.uv0, hit.u, hit.v));
+  world.prefetchIrradiance(interpolate(record.lightmapUv, hit.u, hit.v));
+}
+
 }  // namespace saccade::raytrace

@@ -119,4 +119,14 @@ core::Vec4 TextureView::sample(const Vec2& uv) const {
   return upper + (c + (d - c) * fx - upper) * fy;
 }
 
+void TextureView::prefetch(const Vec2& uv) const {
+  const float u = uv.x - std::floor(uv.x), v = uv.y - std::floor(uv.y);
+  if (!(u >= 0 && v >= 0)) return;
+  const int x = std::clamp(static_cast<int>(u * static_cast<float>(width) - 0.5f), 0, width - 1);
+  const int y = std::clamp(static_cast<int>(v * static_cast<float>(height) - 0.5f), 0, height - 1);
+  __builtin_prefetch(texels + tiledIndex(x, y, tilesAcross));
+  __builtin_prefetch(texels +
+                     tiledIndex(std::min(x + 1, width - 1), std::min(y + 1, height - 1), tilesAcross));
+}
+
 }  // namespace saccade::raytrace

@@ -24,8 +24,8 @@ class Lights;
 
 /// What a hit needs when its light comes from the maps: one cache line.
 struct alignas(64) TriangleRecord {
-  Vec2 lightmapUv[3];
-  Vec2 uv0[3];
+  Vec2 lightmapUv[3] = {Vec2(0), Vec2(0), Vec2(0)};
+  Vec2 uv0[3] = {Vec2(0), Vec2(0), Vec2(0)};
   std::uint32_t object = 0;
   float offset = 0;         ///< metres by which rays start off this triangle, along the geometric normal
   std::int32_t light = -1;  ///< index of the emissive triangle in Lights
@@ -57,7 +57,7 @@ class PackedNormals {
 
 /// What a hit needs beyond that when rays leave it: one more cache line.
 struct alignas(64) TriangleShape {
-  Vec3 position[3];
+  Vec3 position[3] = {Vec3(0), Vec3(0), Vec3(0)};
   PackedNormals normal;
 };
 
@@ -80,6 +80,8 @@ class World {
   bool hasMaps() const { return !mapTexels_.empty(); }
   /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
   Vec3 irradiance(const Vec2& lightmapUv, int layer) const;
+  /// Asks for the front layer's texels that irradiance() reads.
+  void prefetchIrradiance(const Vec2& lightmapUv) const;
 
   /// Nearest hit over all triangles; alpha-masked texels are not there.
   bool intersect(const Ray& ray, Hit& hit, RayCounters& counters) const;
