@@ -64,15 +64,12 @@ float ggxLambda(float cosV, float alpha) {
 
 Vec3 sampleVisibleNormal(const Vec3& v, float alpha, const Vec2& u) {
   const Vec3 stretched = glm::normalize(Vec3(alpha * v.x, alpha * v.y, v.z));
-  const float across = stretched.x * stretched.x + stretched.y * stretched.y;
-  const Vec3 t1 = across > 0 ? Vec3(-stretched.y, stretched.x, 0) / std::sqrt(across) : Vec3(1, 0, 0);
-  const Vec3 t2 = glm::cross(stretched, t1);
-  const float r = std::sqrt(u.x), phi = 2 * core::kPi * u.y;
-  const float p1 = r * std::cos(phi);
-  const float s = 0.5f * (1 + stretched.z);
-  const float p2 = (1 - s) * std::sqrt(std::max(0.0f, 1 - p1 * p1)) + s * r * std::sin(phi);
-  const Vec3 n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0f, 1 - p1 * p1 - p2 * p2)) * stretched;
-  return glm::normalize(Vec3(alpha * n.x, alpha * n.y, std::max(n.z, kLowestCosine)));
+  // A direction in the cap of mirror directions that the hemisphere allows; its half vector is the normal.
+  const float phi = 2 * core::kPi * u.y;
+  const float z = (1 - u.x) * (1 + stretched.z) - stretched.z;
+  const float s = std::sqrt(std::clamp(1 - z * z, 0.0f, 1.0f));
+  const Vec3 h(s * std::cos(phi) + stretched.x, s * std::sin(phi) + stretched.y, z + stretched.z);
+  return glm::normalize(Vec3(alpha * h.x, alpha * h.y, std::max(h.z, kLowestCosine)));
 }
 
 Frame::Frame(const Vec3& normal) : n(normal) {

@@ -7,9 +7,9 @@
 //     is a
 //         solid, any other a thin sheet whose two sides are summed: R = 2F / (1 + F)
 //   mixed as metallic S(baseColor) + (1 - metallic) [(1 - transmission) (S + D) + transmission G].
-// Visible normals are sampled (Heitz 2018). Below kDeltaAlpha S and G are mirrors.
-// Refraction carries no eta^2: camera and light paths both begin and end outside solids, where the factors
-// cancel, so one function serves radiance and photons.
+// Visible normals are sampled (Heitz 2018, by the spherical caps of Dupuy and Benyoub 2023). Below
+// kDeltaAlpha S and G are mirrors. Refraction carries no eta^2: camera and light paths both begin and end
+// outside solids, where the factors cancel, so one function serves radiance and photons.
 #pragma once
 
 #include <optional>
@@ -47,7 +47,7 @@ float fresnelDielectric(float cosI, float eta);
 float ggxD(const Vec3& h, float alpha);
 /// Smith's Lambda.
 float ggxLambda(float cosV, float alpha);
-/// Visible normal (Heitz 2018) for a view direction in the local frame, v.z > 0.
+/// Visible normal for a view direction in the local frame, v.z > 0.
 Vec3 sampleVisibleNormal(const Vec3& v, float alpha, const Vec2& u);
 
 /// An orthonormal basis around a unit normal (Duff et al. 2017); sound at n = (0, 0, -1).

@@ -180,7 +180,7 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
   // Inside a solid every light is behind its wall; only rays that leave find it.
   const bool lights = (bsdf.alpha() >= kNarrowAlpha || world_.lights().hasPunctual()) &&
                       !world_.lights().empty() && (surface.front || !surface.closed);
-  std::array<Leg, CorrectiveOptions::kMaxGlossyRays> legs;
+  std::array<std::optional<Leg>, CorrectiveOptions::kMaxGlossyRays> legs;
   int sent = 0;
   for (int i = 0; i < count; ++i) {
     Vec2 u = sampler_.next2D();
@@ -188,7 +188,7 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
     const float uLobe = bsdf.transmits() ? sampler_.next1D() : 0;
     const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, kLobeSpecular);
     if (!s) continue;
-    Leg& leg = legs[sent++] = send(surface.leave(s->direction));
+    Leg& leg = legs[sent++].emplace(send(surface.leave(s->direction)));
     leg.density = lights && !s->delta ? s->pdf * rays : 0;
     leg.factor = s->weight / rays;
   }
@@ -198,11 +198,12 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
     choice = world_.lights().choose(surface.position);
     sum = lightSample(surface, bsdf, choice, rays, weight);
   }
-  for (int i = 0; i < sent; ++i) approach(legs[i]);
+  for (int i = 0; i < sent; ++i) approach(*legs[i]);
   for (int i = 0; i < sent; ++i) {
-    const RoughRay rough{&choice, legs[i].density};
-    sum += legs[i].factor * received(legs[i], depth + 1, weight * largest(legs[i].factor),
-                                     legs[i].density > 0 ? &rough : nullptr);
+    const Leg& leg = *legs[i];
+    const RoughRay rough{&choice, leg.density};
+    sum += leg.factor *
+           received(leg, depth + 1, weight * largest(leg.factor), leg.density > 0 ? &rough : nullptr);
   }
   return sum;
 }

@@ -1,5 +1,7 @@
 #include "raytrace/texture_store.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +11,8 @@
 namespace saccade::raytrace {
 namespace {
 
-constexpr int kTile = 4;
-constexpr int kTexelsPerTile = kTile * kTile;
+constexpr unsigned kTile = 4;
+constexpr unsigned kTexelsPerTile = kTile * kTile;
 
 /// Byte to linear, for sRGB and for plain data.
 struct DecodeTables {
@@ -46,12 +48,15 @@ int wrapTexel(int i, int size, core::Wrap wrap) {
   return 0;
 }
 
+/// x, y >= 0.
 std::size_t tiledIndex(int x, int y, int tilesAcross) {
-  const std::size_t tile = static_cast<std::size_t>(y / kTile) * tilesAcross + x / kTile;
-  return tile * kTexelsPerTile + (y % kTile) * kTile + x % kTile;
+  const auto column = static_cast<unsigned>(x), row = static_cast<unsigned>(y);
+  const std::size_t tile =
+      static_cast<std::size_t>(row / kTile) * static_cast<unsigned>(tilesAcross) + column / kTile;
+  return tile * kTexelsPerTile + (row % kTile) * kTile + column % kTile;
 }
 
-int tiles(int size) { return (size + kTile - 1) / kTile; }
+int tiles(int size) { return (size + static_cast<int>(kTile) - 1) / static_cast<int>(kTile); }
 
 }  // namespace
 
@@ -101,22 +106,28 @@ core::Vec4 TextureView::sample(const Vec2& uv) const {
   const float y = sound ? uv.y * static_cast<float>(height) : 0;
   const auto fetch = [&](int column, int row) {
     const std::uint32_t t = texels[tiledIndex(column, row, tilesAcross)];
-    return core::Vec4(decode[t & 255], decode[t >> 8 & 255], decode[t >> 16 & 255],
-                      static_cast<float>(t >> 24) * (1 / 255.0f));
+    return _mm_setr_ps(decode[t & 255], decode[t >> 8 & 255], decode[t >> 16 & 255],
+                       static_cast<float>(t >> 24) * (1 / 255.0f));
+  };
+  const auto result = [](__m128 v) {
+    alignas(16) float out[4];
+    _mm_store_ps(out, v);
+    return core::Vec4(out[0], out[1], out[2], out[3]);
   };
   if (nearest) {
-    return fetch(wrapTexel(static_cast<int>(std::floor(x)), width, wrapS),
-                 wrapTexel(static_cast<int>(std::floor(y)), height, wrapT));
+    return result(fetch(wrapTexel(static_cast<int>(std::floor(x)), width, wrapS),
+                        wrapTexel(static_cast<int>(std::floor(y)), height, wrapT)));
   }
   const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-  const float fx = x - 0.5f - left, fy = y - 0.5f - top;
+  const __m128 fx = _mm_set1_ps(x - 0.5f - left), fy = _mm_set1_ps(y - 0.5f - top);
   const int x0 = wrapTexel(static_cast<int>(left), width, wrapS);
   const int x1 = wrapTexel(static_cast<int>(left) + 1, width, wrapS);
   const int y0 = wrapTexel(static_cast<int>(top), height, wrapT);
   const int y1 = wrapTexel(static_cast<int>(top) + 1, height, wrapT);
-  const core::Vec4 a = fetch(x0, y0), b = fetch(x1, y0), c = fetch(x0, y1), d = fetch(x1, y1);
-  const core::Vec4 upper = a + (b - a) * fx;
-  return upper + (c + (d - c) * fx - upper) * fy;
+  const auto mix = [](__m128 a, __m128 b, __m128 f) {
+    return _mm_add_ps(a, _mm_mul_ps(f, _mm_sub_ps(b, a)));
+  };
+  return result(mix(mix(fetch(x0, y0), fetch(x1, y0), fx), mix(fetch(x0, y1), fetch(x1, y1), fx), fy));
 }
 
 void TextureView::prefetch(const Vec2& uv) const {
