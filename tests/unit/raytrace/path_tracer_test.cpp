@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/scene/load.h"
+#include "core/scene/plan.h"
 #include "tests/shared_folder.h"
 #include "tests/unit/raytrace/test_scene.h"
 
@@ -198,6 +199,49 @@ TEST(PathTracer, StopsWhenAsked) {
   core::Progress progress;
   progress.stop = source.get_token();
   EXPECT_THROW(tracePaths(world, smallView(m.scene, 8, 8), options(1, 1), progress), core::Error);
+}
+
+struct MeanColor {
+  glm::dvec3 mean{0}, sigma{0};  ///< sigma: standard error of the mean
+};
+
+MeanColor meanOf(const core::ImageRgb& image, const core::ImageRgb& variance) {
+  MeanColor m;
+  const auto n = static_cast<double>(image.pixels().size());
+  for (const Vec3& p : image.pixels()) m.mean += glm::dvec3(p) / n;
+  for (const Vec3& v : variance.pixels()) m.sigma += glm::dvec3(v) / (n * n);
+  m.sigma = glm::sqrt(m.sigma);
+  return m;
+}
+
+TEST(PathTracer, AgreesWithCyclesUpToItsDiffuseModel) {
+  // Blender's Principled BSDF has Burley's diffuse, which at roughness 1 sends more light back towards where
+  // it came from than glTF's Lambert; that is the difference of models, and the only one: with it the means
+  // agree within 1 %, without it this room is some percent darker.
+  SACCADE_SHARED_FILE(scenePath, "references/cycles/cornell_glossy.glb");
+  SACCADE_SHARED_FILE(picturePath, "references/cycles/cornell_glossy_cycles_4096spp.exr");
+  const core::Scene scene = core::loadScene(scenePath, {});
+  const World world(scene, core::makePlan(scene));
+  const MeanColor cycles = meanOf(core::readExr(picturePath), {});
+  const core::View view(scene.cameras.at(0), 112, 112, scene.bounds);
+  PathOptions o = options(81, 12);
+  o.threads = 2;
+  o.variance = true;
+  o.diffuse = DiffuseModel::burley;
+  const PathResult burley = tracePaths(world, view, o, {});
+  const MeanColor ours = meanOf(burley.radiance, burley.variance);
+  for (int c = 0; c < 3; ++c) {
+    ASSERT_LT(ours.sigma[c] / ours.mean[c], 0.006) << "too few samples to judge";
+    EXPECT_NEAR(ours.mean[c] / cycles.mean[c], 1, 0.01 + 3 * ours.sigma[c] / ours.mean[c]) << "channel " << c;
+  }
+  o.samplesPerPixel = 16;
+  o.diffuse = DiffuseModel::lambert;
+  const PathResult lambert = tracePaths(world, view, o, {});
+  const glm::dvec3 darker = meanOf(lambert.radiance, lambert.variance).mean / cycles.mean;
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GT(darker[c], 0.90);
+    EXPECT_LT(darker[c], 0.99);
+  }
 }
 
 }  // namespace
