@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/math/random.h"
+#include "raytrace/bake/duplicates.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/lights.h"
 #include "raytrace/surface.h"
@@ -19,9 +20,10 @@ constexpr float kMaxNormalRatio = 4;  // bound on cos(shading) / cos(geometric) 
 /// Follows one particle at a time; one per thread.
 class Tracer {
  public:
-  Tracer(const World& world, const TexelMap& texels, FluxGrid& flux)
+  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, FluxGrid& flux)
       : world_(world),
         texels_(texels),
+        duplicates_(duplicates),
         flux_(flux),
         perWatt_(static_cast<float>(1 / world.lights().totalPower())) {}
 
@@ -50,15 +52,27 @@ class Tracer {
   }
 
  private:
+  /// Records the flux at the hit, on the triangles that coincide with the one hit too.
   void deposit(const Surface& surface, const Hit& hit, const Vec3& direction, const Vec3& weight) {
-    if (!surface.front && !surface.material->doubleSided) return;
-    const std::size_t texel = texels_.texelAt(surface.lightmapUv);
-    if (texels_.chartOf(texel) < 0) return;  // shows no irradiance
     const float cosGeometric = -glm::dot(direction, surface.ng);
     const float cosShading =
         -glm::dot(direction, smoothNormal(world_, hit.triangle, hit.u, hit.v, surface.ng));
     const float ratio = std::clamp(cosShading / std::max(cosGeometric, 1e-6f), 0.0f, kMaxNormalRatio);
-    flux_.add(texel, surface.front ? 0 : 1, weight * ratio);
+    add(hit.triangle, surface.lightmapUv, surface.front, weight * ratio);
+    for (const Duplicate& d : duplicates_.of(hit.triangle)) {
+      const float b[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+      Vec2 uv(0);
+      for (int k = 0; k < 3; ++k) uv += world_.record(d.triangle).lightmapUv[d.corner[k]] * b[k];
+      add(d.triangle, uv, surface.front != d.flipped, weight * ratio);
+    }
+  }
+
+  void add(std::uint32_t triangle, const Vec2& lightmapUv, bool front, const Vec3& weight) {
+    const core::Scene& scene = world_.scene();
+    const core::Object& object = scene.objects[world_.record(triangle).object];
+    if (!front && !scene.materials[static_cast<std::size_t>(object.material)].doubleSided) return;
+    const std::size_t texel = texels_.texelAt(lightmapUv);
+    if (texels_.chartOf(texel) >= 0) flux_.add(texel, front ? 0 : 1, weight);  // else shows no irradiance
   }
 
   /// The next ray; false when the particle is absorbed.
@@ -79,6 +93,7 @@ class Tracer {
 
   const World& world_;
   const TexelMap& texels_;
+  const Duplicates& duplicates_;
   FluxGrid& flux_;
   float perWatt_;
   RayCounters counters_;
@@ -104,8 +119,9 @@ void traceParticles(const World& world, const TexelMap& texels, std::uint64_t to
   if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= state.emitted) return;
   const std::uint64_t first = state.emitted;
   const std::uint64_t batches = (total - first + kBatch - 1) / kBatch;
+  const Duplicates duplicates(world);
   parallelFor(threads, batches, progress, share, [&](std::size_t batch) {
-    Tracer tracer(world, texels, state.flux);
+    Tracer tracer(world, texels, duplicates, state.flux);
     const std::uint64_t begin = first + batch * kBatch;
     for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) tracer.follow(i, seed);
   });

@@ -100,13 +100,8 @@ void TexelMap::findCharts() {
   }
 }
 
-void TexelMap::cover() {
-  struct Placed {
-    std::uint32_t texel;
-    TexelFragment fragment;
-  };
+std::vector<TexelMap::Placed> TexelMap::placeFragments() const {
   std::vector<Placed> placed;
-  std::vector<std::size_t> count(texelCount() + 1, 0);
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
     const core::Mesh& mesh = scene_.objects[o].mesh;
     for (std::size_t t = 0; t < chartOfTriangle_[o].size(); ++t) {
@@ -115,22 +110,36 @@ void TexelMap::cover() {
       const double whole = 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
       const double perCell = whole > 0 ? worldArea(mesh, t) / whole : 0;
       if (!(perCell > 0) || !std::isfinite(perCell)) continue;
-      const std::int32_t chart = chartOfTriangle_[o][t];
-      ChartRect& rect = charts_[static_cast<std::size_t>(chart)];
       forEachCell(a, b, c, size_, size_, [&](int x, int y, double cells) {
-        const auto texel = static_cast<std::uint32_t>(y * size_ + x);
         const auto area = static_cast<float>(cells * perCell);
         if (!(area > 0)) return;
-        placed.push_back({texel, {static_cast<std::uint32_t>(o), static_cast<std::uint32_t>(t), area}});
-        ++count[texel + 1];
-        chartOf_[texel] = chart;
-        area_[texel] += area;
-        rect.x0 = std::min(rect.x0, x);
-        rect.y0 = std::min(rect.y0, y);
-        rect.x1 = std::max(rect.x1, x + 1);
-        rect.y1 = std::max(rect.y1, y + 1);
+        placed.push_back({static_cast<std::uint32_t>(y * size_ + x),
+                          chartOfTriangle_[o][t],
+                          static_cast<float>(cells),
+                          {static_cast<std::uint32_t>(o), static_cast<std::uint32_t>(t), area}});
       });
     }
+  }
+  return placed;
+}
+
+void TexelMap::cover() {
+  std::vector<Placed> placed = placeFragments();
+  std::vector<float> filled(texelCount(), 0.0f);
+  for (const Placed& p : placed) filled[p.texel] += p.cells;
+  // A chart's border that should end at a texel's edge can cross it by the rounding of its uv. Such a sliver
+  // is no texel: its few points would stand for the whole texel in look-ups.
+  constexpr float kSliver = 1e-3f;
+  std::erase_if(placed, [&](const Placed& p) { return filled[p.texel] < kSliver; });
+  std::vector<std::size_t> count(texelCount() + 1, 0);
+  for (const Placed& p : placed) {
+    const int x = static_cast<int>(p.texel) % size_, y = static_cast<int>(p.texel) / size_;
+    ChartRect& rect = charts_[static_cast<std::size_t>(p.chart)];
+    rect = {std::min(rect.x0, x), std::min(rect.y0, y), std::max(rect.x1, x + 1), std::max(rect.y1, y + 1),
+            rect.doubleSided};
+    ++count[p.texel + 1];
+    chartOf_[p.texel] = p.chart;
+    area_[p.texel] += p.fragment.area;
   }
   for (std::size_t i = 1; i < count.size(); ++i) count[i] += count[i - 1];
   first_ = count;

@@ -40,7 +40,8 @@ class TexelMap {
   /// Index into charts(), or -1 where the texel holds no surface.
   std::int32_t chartOf(std::size_t texel) const { return chartOf_[texel]; }
   /// World area in m^2 that the texel covers: the exact area of the triangles clipped to it, so that flux /
-  /// area is unbiased in texels that a chart's border cuts.
+  /// area is unbiased in texels that a chart's border cuts. Slivers below a thousandth of a texel are left
+  /// out.
   float area(std::size_t texel) const { return area_[texel]; }
   std::span<const TexelFragment> fragments(std::size_t texel) const {
     return {fragments_.data() + first_[texel], fragments_.data() + first_[texel + 1]};
@@ -53,7 +54,14 @@ class TexelMap {
   bool anyDoubleSided() const { return anyDoubleSided_; }
 
  private:
+  struct Placed {
+    std::uint32_t texel;
+    std::int32_t chart;
+    float cells;  ///< share of the texel
+    TexelFragment fragment;
+  };
   void findCharts();
+  std::vector<Placed> placeFragments() const;
   void cover();
 
   const core::Scene& scene_;

@@ -212,6 +212,18 @@ TEST(BakeLight, ParticlesCarryTheFluxThatBouncesWithinOnePercent) {
   EXPECT_NEAR(arrived * wattsPerWeight(world, state.emitted) / (6 * core::kPi), 1, 0.01);
 }
 
+TEST(BakeLight, AFaceThatTheFileHoldsTwiceIsLitTwice) {
+  Builder b;  // rays meet only the first of equal triangles
+  b.box(Builder::matte(0.7f), Vec3(0), Vec3(1), true);
+  b.quad(Builder::matte(0, Vec3(10)), Vec3(0.3f, 0.99f, 0.3f), Vec3(0.4f, 0, 0), Vec3(0, 0, 0.4f));
+  const int again =
+      b.quad(Builder::matte(0.7f), Vec3(0), Vec3(0, 0, 1), Vec3(1, 0, 0));  // the floor, object 0
+  const Baked baked(std::move(b.scene), 96, optionsOf("medium", 200000));
+  for (const Vec3 p : {Vec3(0.5f, 0, 0.5f), Vec3(0.2f, 0, 0.7f), Vec3(0.9f, 0, 0.1f)}) {
+    EXPECT_NEAR(baked.irradiance(again, p).y / baked.irradiance(0, p).y, 1, 0.05);
+  }
+}
+
 core::Scene smallRoom() {
   Builder b;
   core::Material sheet = Builder::matte(0.6f);
