@@ -81,7 +81,8 @@ void RegionQueue::setPriorities(std::span<const float> byId) {
   const std::lock_guard lock(mutex_);
   if (basePriority_.size() < byId.size()) basePriority_.resize(byId.size(), kUnseenPriority);
   for (std::size_t id = 1; id < byId.size(); ++id) {
-    // 0 = the analysis did not see the object: should it come into view, it starts ahead of what is partly corrected.
+    // 0 = the analysis did not see the object: should it come into view, it starts ahead of what is partly
+    // corrected.
     const float given = byId[id] > 0 ? std::clamp(byId[id], kLowestPriority, 1.0f) : kLowestPriority;
     basePriority_[id] = byId[id] == 0 ? kUnseenPriority : given;
   }

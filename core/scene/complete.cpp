@@ -108,7 +108,8 @@ void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool lig
 /// Every object names a material that is there; scenes made in memory may leave their nodes to be made here.
 void checkObjects(Scene& scene) {
   for (const Object& o : scene.objects) {
-    if (o.node >= static_cast<int>(scene.nodes.size())) scene.nodes.resize(static_cast<std::size_t>(o.node) + 1);
+    if (o.node >= static_cast<int>(scene.nodes.size()))
+      scene.nodes.resize(static_cast<std::size_t>(o.node) + 1);
     if (o.material < 0 || static_cast<std::size_t>(o.material) >= scene.materials.size())
       throw Error(scene.path + ": object '" + o.name + "' names a material that is not there");
   }

@@ -54,7 +54,9 @@ bool isSolid(const core::Scene& scene, const core::Object& object) {
 }
 
 /// As the tracer has it: what refracts is seen from inside too.
-bool isOneSided(const core::Material& material) { return !material.doubleSided && material.transmission == 0; }
+bool isOneSided(const core::Material& material) {
+  return !material.doubleSided && material.transmission == 0;
+}
 
 template <class T>
 void fillBuffer(const Gl& gl, GLenum target, const std::vector<T>& data) {

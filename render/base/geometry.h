@@ -18,8 +18,8 @@ struct DrawItem {
   std::uint32_t attributes = 0;  ///< names the vertex layout
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
-  bool solid = false;    ///< opaque, and its front faces hide its back faces from outside
-  bool oneSided = false; ///< single-sided and opaque: its back faces are invisible to the camera
+  bool solid = false;     ///< opaque, and its front faces hide its back faces from outside
+  bool oneSided = false;  ///< single-sided and opaque: its back faces are invisible to the camera
 };
 
 /// All vertices interleaved, one vertex buffer per layout (the attributes that programs need), and one index
