@@ -55,7 +55,6 @@ class Walk {
   /// Radiance along a ray of a delta.
   Vec3 incoming(const Ray& ray, int depth, float weight) {
     Leg leg = send(ray);
-    approach(leg);
     return received(leg, depth, weight, nullptr);
   }
 
@@ -75,9 +74,6 @@ class Walk {
     leg.met = world_.intersect(ray, leg.hit, counters_);
     if (leg.met) prefetchHit(world_, leg.hit);
     return leg;
-  }
-  void approach(const Leg& leg) const {
-    if (leg.met && world_.diffuse(leg.hit.object)) prefetchBaseLight(world_, leg.hit);
   }
   /// Radiance that comes back along a leg. `rough` is null for rays of deltas.
   Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
@@ -198,7 +194,6 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
     choice = world_.lights().choose(surface.position);
     sum = lightSample(surface, bsdf, choice, rays, weight);
   }
-  for (int i = 0; i < sent; ++i) approach(*legs[i]);
   for (int i = 0; i < sent; ++i) {
     const Leg& leg = *legs[i];
     const RoughRay rough{&choice, leg.density};
@@ -275,14 +270,12 @@ core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, in
 
 void CorrectiveTracer::trace(const core::FrameSnapshot& frame, std::span<const Pixel> pixels, int level,
                              RayCounters& counters, std::vector<core::Sample>& out) const {
-  constexpr std::size_t kAtOnce = 32, kAhead = 2;
+  constexpr std::size_t kAtOnce = 32;
   std::array<Primary, kAtOnce> primaries;
   for (std::size_t first = 0; first < pixels.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, pixels.size() - first);
     for (std::size_t i = 0; i < count; ++i) primaries[i] = aim(frame, pixels[first + i], counters);
     for (std::size_t i = 0; i < count; ++i) {
-      if (i + kAhead < count && primaries[i + kAhead].found)
-        prefetchBaseLight(world_, primaries[i + kAhead].hit);
       out.push_back(shade(frame, pixels[first + i], level, primaries[i], counters));
     }
   }

@@ -175,15 +175,4 @@ void prefetchHit(const World& world, const Hit& hit) {
   if (!world.diffuse(hit.object)) __builtin_prefetch(&world.shape(hit.triangle));
 }
 
-void prefetchBaseLight(const World& world, const Hit& hit) {
-  const TriangleRecord& record = world.record(hit.triangle);
-  const CompiledMaterial& m = world.materialOf(hit.object);
-  if (m.textured) {
-    const Vec2 uv = interpolate(record.uv0, hit.u, hit.v);
-    if (m.baseColorTexture) m.baseColorTexture.prefetch(uv);
-    if (m.metallicRoughnessTexture) m.metallicRoughnessTexture.prefetch(uv);
-  }
-  world.prefetchIrradiance(interpolate(record.lightmapUv, hit.u, hit.v));
-}
-
 }  // namespace saccade::raytrace

@@ -45,10 +45,8 @@ struct BaseLight {
 };
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction);
 
-/// Hints to the memory, for callers who have other work before they need a hit: first its record, then (the
-/// record being there) the texels and the maps' texels that baseLight will read.
+/// A hint to the memory, for callers who have other work before they need a hit.
 void prefetchHit(const World& world, const Hit& hit);
-void prefetchBaseLight(const World& world, const Hit& hit);
 
 /// Diffuse reflectance that maps and base layer use: baseColor (1 - metallic) (1 - transmission)
 /// diffuseFactor.

@@ -29,23 +29,28 @@ const DecodeTables& decodeTables() {
   return tables;
 }
 
-/// Texel index of an integer position that may lie outside [0, size).
-int wrapTexel(int i, int size, core::Wrap wrap) {
-  if (static_cast<unsigned>(i) < static_cast<unsigned>(size)) return i;
+/// A texture coordinate brought into [0, 1] as the wrap mode says. Beyond +-1e6, where a float no longer
+/// resolves texels, and for NaN: 0.
+float wrapCoordinate(float u, core::Wrap wrap) {
+  if (!(std::fabs(u) < 1e6f)) return 0;
   switch (wrap) {
-    case core::Wrap::clamp:
-      return i < 0 ? 0 : size - 1;
-    case core::Wrap::repeat: {
-      const int r = i % size;
-      return r < 0 ? r + size : r;
-    }
+    case core::Wrap::repeat:
+      return u - std::floor(u);
     case core::Wrap::mirror: {
-      int r = i % (2 * size);
-      if (r < 0) r += 2 * size;
-      return r < size ? r : 2 * size - 1 - r;
+      const float twice = u - 2 * std::floor(0.5f * u);
+      return twice > 1 ? 2 - twice : twice;
     }
+    case core::Wrap::clamp:
+      return std::clamp(u, 0.0f, 1.0f);
   }
   return 0;
+}
+
+/// Texel index of a position in [-1, size].
+int wrapTexel(int i, int size, core::Wrap wrap) {
+  if (static_cast<unsigned>(i) < static_cast<unsigned>(size)) return i;
+  const bool below = i < 0;
+  return (wrap == core::Wrap::repeat) == below ? size - 1 : 0;
 }
 
 /// x, y >= 0.
@@ -100,10 +105,8 @@ TextureView TextureStore::view(const core::TextureSlot& slot) const {
 }
 
 core::Vec4 TextureView::sample(const Vec2& uv) const {
-  constexpr float kLargest = 1e6f;  // beyond, a float no longer resolves texels
-  const bool sound = std::fabs(uv.x) < kLargest && std::fabs(uv.y) < kLargest;
-  const float x = sound ? uv.x * static_cast<float>(width) : 0;
-  const float y = sound ? uv.y * static_cast<float>(height) : 0;
+  const float x = wrapCoordinate(uv.x, wrapS) * static_cast<float>(width);
+  const float y = wrapCoordinate(uv.y, wrapT) * static_cast<float>(height);
   const auto fetch = [&](int column, int row) {
     const std::uint32_t t = texels[tiledIndex(column, row, tilesAcross)];
     return _mm_setr_ps(decode[t & 255], decode[t >> 8 & 255], decode[t >> 16 & 255],
@@ -128,16 +131,6 @@ core::Vec4 TextureView::sample(const Vec2& uv) const {
     return _mm_add_ps(a, _mm_mul_ps(f, _mm_sub_ps(b, a)));
   };
   return result(mix(mix(fetch(x0, y0), fetch(x1, y0), fx), mix(fetch(x0, y1), fetch(x1, y1), fx), fy));
-}
-
-void TextureView::prefetch(const Vec2& uv) const {
-  const float u = uv.x - std::floor(uv.x), v = uv.y - std::floor(uv.y);
-  if (!(u >= 0 && v >= 0)) return;
-  const int x = std::clamp(static_cast<int>(u * static_cast<float>(width) - 0.5f), 0, width - 1);
-  const int y = std::clamp(static_cast<int>(v * static_cast<float>(height) - 0.5f), 0, height - 1);
-  __builtin_prefetch(texels + tiledIndex(x, y, tilesAcross));
-  __builtin_prefetch(texels +
-                     tiledIndex(std::min(x + 1, width - 1), std::min(y + 1, height - 1), tilesAcross));
 }
 
 }  // namespace saccade::raytrace

@@ -24,8 +24,6 @@ struct TextureView {
   /// Bilinear (or nearest) RGBA, colour decoded to linear. v runs downwards. Beyond +-1e6 and for NaN, uv =
   /// 0.
   core::Vec4 sample(const Vec2& uv) const;
-  /// Asks for the texels that sample(uv) reads; where the wrap modes matter, for others.
-  void prefetch(const Vec2& uv) const;
 };
 
 class TextureStore {

@@ -396,13 +396,6 @@ Vec3 World::irradiance(const Vec2& uv, int layer) const {
   return {out[0], out[1], out[2]};
 }
 
-void World::prefetchIrradiance(const Vec2& uv) const {
-  if (mapTexels_.empty() || !(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1)) return;
-  const int x = std::min(static_cast<int>(uv.x * static_cast<float>(mapWidth_)), mapWidth_ - 1);
-  const int y = std::min(static_cast<int>(uv.y * static_cast<float>(mapHeight_)), mapHeight_ - 1);
-  __builtin_prefetch(&mapTexels_[mapIndex(x, y, 0)]);
-}
-
 bool World::intersect(const Ray& ray, Hit& hit, RayCounters& counters) const {
   if (!traceable(ray)) {
     ++counters.refused;

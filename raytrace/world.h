@@ -80,8 +80,6 @@ class World {
   bool hasMaps() const { return !mapTexels_.empty(); }
   /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
   Vec3 irradiance(const Vec2& lightmapUv, int layer) const;
-  /// Asks for the front layer's texels that irradiance() reads.
-  void prefetchIrradiance(const Vec2& lightmapUv) const;
 
   /// Nearest hit over all triangles; alpha-masked texels are not there.
   bool intersect(const Ray& ray, Hit& hit, RayCounters& counters) const;

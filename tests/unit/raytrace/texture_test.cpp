@@ -1,0 +1,85 @@
+// Texels: wrap modes, filtering, decoding, tiles.
+#include <gtest/gtest.h>
+
+#include "core/image_io.h"
+#include "raytrace/texture_store.h"
+
+namespace saccade::raytrace {
+namespace {
+
+/// 7 x 5 texels, all different: R = column, G = row.
+core::Scene sceneWith(core::Wrap wrap, bool nearest, bool srgb) {
+  core::Scene scene;
+  core::Texture t;
+  t.image = core::ImageRgba8(7, 5);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 7; ++x) {
+      t.image.at(x, y) = {static_cast<std::uint8_t>(30 * x), static_cast<std::uint8_t>(50 * y), 200,
+                          static_cast<std::uint8_t>(x + y)};
+    }
+  }
+  t.wrapS = t.wrapT = wrap;
+  t.nearest = nearest;
+  t.srgb = srgb;
+  scene.textures.push_back(t);
+  return scene;
+}
+
+Vec2 center(int x, int y) { return {(static_cast<float>(x) + 0.5f) / 7, (static_cast<float>(y) + 0.5f) / 5}; }
+
+int wrapped(int i, int size, core::Wrap wrap) {
+  if (wrap == core::Wrap::clamp) return std::clamp(i, 0, size - 1);
+  const int period = wrap == core::Wrap::mirror ? 2 * size : size;
+  const int r = ((i % period) + period) % period;
+  return r < size ? r : 2 * size - 1 - r;
+}
+
+TEST(Texture, EveryTexelUnderEveryWrapMode) {
+  for (core::Wrap wrap : {core::Wrap::repeat, core::Wrap::clamp, core::Wrap::mirror}) {
+    for (bool nearest : {false, true}) {
+      const core::Scene scene = sceneWith(wrap, nearest, false);
+      const TextureStore store(scene);
+      const TextureView view = store.view({0, 0});
+      for (int y = -11; y < 16; ++y) {
+        for (int x = -15; x < 22; ++x) {
+          const core::Vec4 t = view.sample(center(x, y));
+          ASSERT_NEAR(t.x, 30 * wrapped(x, 7, wrap) / 255.0, 1e-4) << x << " " << y;
+          ASSERT_NEAR(t.y, 50 * wrapped(y, 5, wrap) / 255.0, 1e-4) << x << " " << y;
+          ASSERT_NEAR(t.w, (wrapped(x, 7, wrap) + wrapped(y, 5, wrap)) / 255.0, 1e-5);
+        }
+      }
+    }
+  }
+}
+
+TEST(Texture, BilinearBetweenTexelsAndAcrossTheSeam) {
+  const core::Scene scene = sceneWith(core::Wrap::repeat, false, false);
+  const TextureStore store(scene);
+  const TextureView view = store.view({0, 0});
+  EXPECT_NEAR(view.sample((center(2, 1) + center(3, 1)) * 0.5f).x, 75 / 255.0, 1e-5);
+  EXPECT_NEAR(view.sample((center(2, 1) * 0.75f + center(2, 2) * 0.25f)).y, 62.5 / 255, 1e-5);
+  EXPECT_NEAR(view.sample({0, 0.1f}).x, 90 / 255.0, 1e-4);  // columns 6 and 0
+  EXPECT_NEAR(view.sample({1, 0.1f}).x, 90 / 255.0, 1e-4);
+}
+
+TEST(Texture, ColourIsDecodedAndAlphaIsNot) {
+  const core::Scene scene = sceneWith(core::Wrap::repeat, false, true);
+  const TextureStore store(scene);
+  const core::Vec4 t = store.view({0, 0}).sample(center(4, 2));
+  EXPECT_FLOAT_EQ(t.x, core::decodeSrgb(120 / 255.0f));
+  EXPECT_FLOAT_EQ(t.z, core::decodeSrgb(200 / 255.0f));
+  EXPECT_FLOAT_EQ(t.w, 6 / 255.0f);
+}
+
+TEST(Texture, UnsoundCoordinatesAndEmptySlots) {
+  const core::Scene scene = sceneWith(core::Wrap::repeat, false, false);
+  const TextureStore store(scene);
+  const float nan = std::nanf("");
+  for (float bad : {nan, core::kInfinity, -core::kInfinity, 1e30f, -1e9f}) {
+    EXPECT_EQ(store.view({0, 0}).sample({bad, 0.5f}), store.view({0, 0}).sample({0, 0.5f}));
+  }
+  EXPECT_FALSE(store.view({}));
+}
+
+}  // namespace
+}  // namespace saccade::raytrace
