@@ -124,12 +124,23 @@ TEST_P(BaseLayer, BackLayerServesTheBackOfDoubleSidedSurfacesOnly) {
   core::Material m = lambert(Vec3(1));
   const core::IlluminationMaps maps = constantMaps({Vec3(1), Vec3(16)});
   const float factor = core::baseDiffuseFactor(oneQuad(m), m) / core::kPi;
-  expectRadiance(center(oneQuadFromBehind(m), &maps), Vec3(factor));
   m.doubleSided = true;
   expectRadiance(center(oneQuad(m), &maps), Vec3(factor));
   expectRadiance(center(oneQuadFromBehind(m), &maps), Vec3(16 * factor));
   const core::IlluminationMaps frontOnly = constantMaps({Vec3(4)});
   expectRadiance(center(oneQuadFromBehind(m), &frontOnly), Vec3(4 * factor));
+}
+
+TEST_P(BaseLayer, BackFacesOfSingleSidedSurfacesAreNotThereUnlessTheyRefract) {
+  core::Material m = lambert(Vec3(1));
+  const auto drawn = [&](const Scene& scene) { return draw(scene)->depth[16 * 32 + 16] < 1; };
+  EXPECT_TRUE(drawn(oneQuad(m)));
+  EXPECT_FALSE(drawn(oneQuadFromBehind(m)));
+  m.transmission = 1;
+  EXPECT_TRUE(drawn(oneQuadFromBehind(m)));
+  m.transmission = 0;
+  m.doubleSided = true;
+  EXPECT_TRUE(drawn(oneQuadFromBehind(m)));
 }
 
 TEST_P(BaseLayer, AlphaMaskCutsAndBlendScales) {
@@ -282,6 +293,7 @@ TEST_P(BaseLayer, CullingLeavesTheImageAlone) {
 TEST_P(BaseLayer, SolidAroundTheCameraShowsItsInside) {
   Scene scene;
   scene.materials.push_back(lambert(Vec3(1)));
+  scene.materials[0].doubleSided = true;
   addObject(scene, makeBox(Vec3(-1), Vec3(1), 0, 9));
   const auto frame = draw(scene);
   EXPECT_EQ(frame->nonDiffusePixels, 32u * 32u);
