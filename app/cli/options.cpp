@@ -94,6 +94,11 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->transform(CLI::CheckedTransformer(kOrders))
       ->default_str("attention")
       ->group(group);
+  command
+      .add_option("--aging", o.aging, "Test that cached samples must pass: haber, the paper's section 4.5")
+      ->check(CLI::IsMember({"haber"}))
+      ->capture_default_str()
+      ->group(group);
   command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str()

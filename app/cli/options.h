@@ -41,6 +41,7 @@ struct RunOptions {
 
 struct CorrectiveOptions {
   attention::AttentionOptions attention;
+  std::string aging = "haber";  ///< the one there is; scripts name it
   float delta = 0.1f;
   int nMin = 10;
   int maxAge = 30;

@@ -26,6 +26,7 @@ struct RenderOptions {
   ImageSize size;
   std::string output;
   std::string method = "corrective";
+  std::string base = "baked";  ///< the one there is; scripts name it
   std::optional<double> budgetMs;
   std::optional<std::uint64_t> samples;
   bool converge = false;
@@ -178,6 +179,10 @@ void addRenderCommand(CLI::App& program, Run& run) {
           "base: illumination maps alone; corrective: with corrections where people look; raytrace: the same "
           "corrections for every pixel in scanline order; path: unbiased path tracing")
       ->check(CLI::IsMember({"base", "corrective", "raytrace", "path"}))
+      ->capture_default_str();
+  command
+      ->add_option("--base", o->base, "What base, corrective and raytrace stand on: baked illumination maps")
+      ->check(CLI::IsMember({"baked"}))
       ->capture_default_str();
   addSizeOption(*command, o->size);
   command->add_option("--budget-ms", o->budgetMs, "corrective: milliseconds for the frame")
