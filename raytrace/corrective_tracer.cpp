@@ -59,8 +59,7 @@ class Walk {
   }
 
  private:
-  /// A ray and what it met. Rays of one hit are sent together, so that what they need later is on its way
-  /// from memory while others are traced.
+  /// A ray and what it met.
   struct Leg {
     Ray ray;
     Hit hit;
@@ -72,7 +71,6 @@ class Walk {
     Leg leg;
     leg.ray = ray;
     leg.met = world_.intersect(ray, leg.hit, counters_);
-    if (leg.met) prefetchHit(world_, leg.hit);
     return leg;
   }
   /// Radiance that comes back along a leg. `rough` is null for rays of deltas.
@@ -244,55 +242,37 @@ CorrectiveTracer::CorrectiveTracer(const World& world, const CorrectiveOptions& 
 
 /// The pixel's ray on the object that the frame names; where it misses, the object's point nearest to the
 /// depth buffer's (design fact 9).
-CorrectiveTracer::Primary CorrectiveTracer::aim(const core::FrameSnapshot& frame, Pixel pixel,
+CorrectiveTracer::Primary CorrectiveTracer::aim(const core::FrameSnapshot& frame, int x, int y,
                                                 RayCounters& counters) const {
   Primary primary;
-  const std::uint32_t object = world_.objectOfId(frame.idAt(pixel.x, pixel.y));
-  const Vec2 center(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
+  const std::uint32_t object = world_.objectOfId(frame.idAt(x, y));
+  const Vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
   const Vec3 direction = frame.view.direction(center);
   const Ray ray{frame.view.camera().eye, direction, 0, core::kInfinity};
   primary.direction = glm::normalize(direction);
   primary.found = world_.intersectVisible(object, ray, primary.hit, counters);
   if (!primary.found) {
     primary.fromDepth = true;
-    const float depth = frame.depth[frame.index(pixel.x, pixel.y)];
+    const float depth = frame.depth[frame.index(x, y)];
     primary.found = world_.closestPoint(object, frame.view.unproject(center, depth), primary.hit);
     if (primary.found) primary.direction = facingDirection(primary.hit, primary.direction);
   }
-  if (primary.found) prefetchHit(world_, primary.hit);
   return primary;
 }
 
 core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, int y, int level,
                                      RayCounters& counters) const {
-  return shade(frame, {x, y}, level, aim(frame, {x, y}, counters), counters);
-}
-
-void CorrectiveTracer::trace(const core::FrameSnapshot& frame, std::span<const Pixel> pixels, int level,
-                             RayCounters& counters, std::vector<core::Sample>& out) const {
-  constexpr std::size_t kAtOnce = 32;
-  std::array<Primary, kAtOnce> primaries;
-  for (std::size_t first = 0; first < pixels.size(); first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, pixels.size() - first);
-    for (std::size_t i = 0; i < count; ++i) primaries[i] = aim(frame, pixels[first + i], counters);
-    for (std::size_t i = 0; i < count; ++i) {
-      out.push_back(shade(frame, pixels[first + i], level, primaries[i], counters));
-    }
-  }
-}
-
-core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, Pixel pixel, int level,
-                                     const Primary& primary, RayCounters& counters) const {
+  const Primary primary = aim(frame, x, y, counters);
   const Vec3& direction = primary.direction;
   core::Sample sample;
-  sample.x = pixel.x;
-  sample.y = pixel.y;
-  sample.id = frame.idAt(pixel.x, pixel.y);
+  sample.x = x;
+  sample.y = y;
+  sample.id = frame.idAt(x, y);
   sample.level = static_cast<std::uint8_t>(level);
   sample.fromDepth = primary.fromDepth;
-  const float windowDepth = frame.depth[frame.index(pixel.x, pixel.y)];
+  const float windowDepth = frame.depth[frame.index(x, y)];
   if (!primary.found) {
-    const Vec2 center(static_cast<float>(pixel.x) + 0.5f, static_cast<float>(pixel.y) + 0.5f);
+    const Vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     sample.position = frame.view.unproject(center, windowDepth);
     sample.normal = -direction;
     sample.cosView = 1;
@@ -306,11 +286,22 @@ core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, Pixel pix
   sample.cosView = std::clamp(glm::dot(surface.ns, -direction), 0.0f, 1.0f);
   sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(windowDepth) : primary.hit.t;
 
+  const Vec3 sum = correction(surface, bsdf, direction, x, y, counters);
+  if (finite(sum)) {
+    sample.correction = sum;
+  } else {
+    ++counters.nonFinite;
+  }
+  return sample;
+}
+
+Vec3 CorrectiveTracer::correction(const Surface& surface, const Bsdf& bsdf, const Vec3& direction, int x,
+                                  int y, RayCounters& counters) const {
   const float coverage = surface.point.coverage;
   Vec3 sum(0);
   for (int i = 0; i < options_.samplesPerPixel; ++i) {
     Walk walk(world_, options_,
-              core::PixelSampler(static_cast<std::uint32_t>(pixel.x), static_cast<std::uint32_t>(pixel.y),
+              core::PixelSampler(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                  static_cast<std::uint64_t>(i), options_.seed),
               counters);
     if (coverage > 0 && !surface.material->unlit) sum += coverage * walk.specular(surface, bsdf, 0, coverage);
@@ -322,12 +313,7 @@ core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, Pixel pix
     const Vec3 viewDependent = bsdf.diffuseUnderMap() - baseAlbedo(surface.point) * (1 / core::kPi);
     sum += viewDependent * world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1) * coverage;
   }
-  if (!finite(sum)) {
-    ++counters.nonFinite;
-    return sample;
-  }
-  sample.correction = sum;
-  return sample;
+  return sum;
 }
 
 }  // namespace saccade::raytrace

@@ -7,13 +7,14 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "core/corrective/messages.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
+
+struct Surface;
+class Bsdf;
 
 struct CorrectiveOptions {
   static constexpr int kMaxGlossyRays = 4;
@@ -24,21 +25,12 @@ struct CorrectiveOptions {
 
 class CorrectiveTracer {
  public:
-  struct Pixel {
-    std::int32_t x = 0, y = 0;
-  };
-
   /// The world must outlive the tracer.
   CorrectiveTracer(const World& world, const CorrectiveOptions& options);
 
   /// The sample of pixel (x, y), whose id in the frame must not be 0. `level` is only a label. Any thread; no
   /// allocation. A correction that is not finite becomes 0 and is counted.
   core::Sample trace(const core::FrameSnapshot& frame, int x, int y, int level, RayCounters& counters) const;
-
-  /// trace() of each pixel in order, appended to `out`: the same samples, sooner, because all the primary
-  /// rays are traced before the first is shaded and what shading needs is fetched meanwhile.
-  void trace(const core::FrameSnapshot& frame, std::span<const Pixel> pixels, int level,
-             RayCounters& counters, std::vector<core::Sample>& out) const;
 
   const World& world() const { return world_; }
   const CorrectiveOptions& options() const { return options_; }
@@ -51,9 +43,9 @@ class CorrectiveTracer {
     bool found = false;
     bool fromDepth = false;
   };
-  Primary aim(const core::FrameSnapshot& frame, Pixel pixel, RayCounters& counters) const;
-  core::Sample shade(const core::FrameSnapshot& frame, Pixel pixel, int level, const Primary& primary,
-                     RayCounters& counters) const;
+  Primary aim(const core::FrameSnapshot& frame, int x, int y, RayCounters& counters) const;
+  Vec3 correction(const Surface& surface, const Bsdf& bsdf, const Vec3& direction, int x, int y,
+                  RayCounters& counters) const;
 
   const World& world_;
   CorrectiveOptions options_;

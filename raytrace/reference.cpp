@@ -11,8 +11,6 @@ TraceAllResult traceAll(const CorrectiveTracer& tracer, const core::FrameSnapsho
   struct alignas(64) Tally {
     RayCounters counters;
     std::uint64_t traced = 0, fromDepth = 0;
-    std::vector<CorrectiveTracer::Pixel> pixels;  ///< of the present row
-    std::vector<core::Sample> samples;
   };
   const int width = frame.view.width(), height = frame.view.height();
   TraceAllResult result;
@@ -20,14 +18,10 @@ TraceAllResult traceAll(const CorrectiveTracer& tracer, const core::FrameSnapsho
   std::vector<Tally> tallies(std::max(threads, 1));
   parallelRows(height, threads, progress, [&](int y, int worker) {
     Tally& tally = tallies[worker];
-    tally.pixels.clear();
-    tally.samples.clear();
     for (int x = 0; x < width; ++x) {
-      if (frame.idAt(x, y) != 0) tally.pixels.push_back({x, y});
-    }
-    tracer.trace(frame, tally.pixels, core::Lattice::kMaxLevel, tally.counters, tally.samples);
-    for (const core::Sample& s : tally.samples) {
-      result.corrections[frame.index(s.x, s.y)] = core::Vec4(s.correction, 1);
+      if (frame.idAt(x, y) == 0) continue;
+      const core::Sample s = tracer.trace(frame, x, y, core::Lattice::kMaxLevel, tally.counters);
+      result.corrections[frame.index(x, y)] = core::Vec4(s.correction, 1);
       ++tally.traced;
       tally.fromDepth += s.fromDepth;
     }

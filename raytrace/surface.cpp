@@ -170,9 +170,4 @@ BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   return light;
 }
 
-void prefetchHit(const World& world, const Hit& hit) {
-  __builtin_prefetch(&world.record(hit.triangle));
-  if (!world.diffuse(hit.object)) __builtin_prefetch(&world.shape(hit.triangle));
-}
-
 }  // namespace saccade::raytrace

@@ -45,9 +45,6 @@ struct BaseLight {
 };
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction);
 
-/// A hint to the memory, for callers who have other work before they need a hit.
-void prefetchHit(const World& world, const Hit& hit);
-
 /// Diffuse reflectance that maps and base layer use: baseColor (1 - metallic) (1 - transmission)
 /// diffuseFactor.
 inline Vec3 baseAlbedo(const MaterialPoint& m) {

@@ -1,14 +1,12 @@
 #include "raytrace/tracer_pool.h"
 
-#include <array>
-#include <span>
 #include <utility>
 
 namespace saccade::raytrace {
 namespace {
 
 /// Pixels between two looks at the stop flag.
-constexpr std::size_t kPollPixels = 32;
+constexpr int kPollPixels = 16;
 
 }  // namespace
 
@@ -45,20 +43,17 @@ core::SampleBatch TracerPool::trace(const core::Job& job, std::uint8_t thread) {
   batch.epoch = job.frame->epoch;
   batch.sequence = job.sequence;
   RayCounters counters;
-  std::array<CorrectiveTracer::Pixel, kPollPixels> pixels;
-  std::size_t count = 0;
-  const auto flush = [&] {
-    if (!stopping_.load(std::memory_order_relaxed)) {
-      tracer_.trace(*job.frame, std::span(pixels.data(), count), job.begin.level, counters, batch.samples);
-    }
-    count = 0;
-  };
+  int untilPoll = kPollPixels;
+  bool stopped = false;
   core::forEachPixel(job, [&](int x, int y) {
-    pixels[count++] = {x, y};
-    if (count == pixels.size()) flush();
+    if (stopped) return;
+    if (--untilPoll == 0) {
+      untilPoll = kPollPixels;
+      stopped = stopping_.load(std::memory_order_relaxed);
+    }
+    batch.samples.push_back(tracer_.trace(*job.frame, x, y, job.begin.level, counters));
+    batch.samples.back().thread = thread;
   });
-  flush();
-  for (core::Sample& s : batch.samples) s.thread = thread;
   samples_.fetch_add(batch.samples.size(), std::memory_order_relaxed);
   rays_.fetch_add(counters.rays, std::memory_order_relaxed);
   nonFinite_.fetch_add(counters.nonFinite, std::memory_order_relaxed);
