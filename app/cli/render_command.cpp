@@ -33,6 +33,7 @@ struct RenderOptions {
   std::string aov;
   int bounces = 12;
   std::string lobes = "all";
+  std::string diffuse = "lambert";
 };
 
 void checkOutput(const RenderOptions& o) {
@@ -120,6 +121,7 @@ RunStats renderPathTraced(const RenderOptions& o, const Workspace& workspace, co
   path.samplesPerPixel = o.corrective.samplesPerPixel;
   path.bounces = o.bounces;
   path.transport = o.lobes == "diffuse" ? raytrace::Transport::diffuse : raytrace::Transport::all;
+  path.diffuse = o.diffuse == "burley" ? raytrace::DiffuseModel::burley : raytrace::DiffuseModel::lambert;
   path.seed = o.run.seed;
   path.threads = tracerThreads(o.run);
   ProgressBar bar("path tracing");
@@ -199,6 +201,12 @@ void addRenderCommand(CLI::App& program, Run& run) {
       ->add_option("--lobes", o->lobes,
                    "path: all lobes, or only Lambert's (what the illumination maps hold)")
       ->check(CLI::IsMember({"all", "diffuse"}))
+      ->capture_default_str();
+  command
+      ->add_option("--diffuse", o->diffuse,
+                   "path: Lambert as glTF and the maps have it, or Burley's as Blender's Principled BSDF, to "
+                   "compare with Cycles")
+      ->check(CLI::IsMember({"lambert", "burley"}))
       ->capture_default_str();
   addCameraOptions(*command, o->camera);
   addCorrectiveOptions(*command, o->corrective);

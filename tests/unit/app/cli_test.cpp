@@ -139,7 +139,7 @@ TEST(Cli, EveryMethodAndAovWritesAPicture) {
        {"--method base", "--method path --spp 2", "--aov id", "--aov level", "--aov thread", "--aov age",
         "--aov saliency", "--samples 50",
         "--base baked --aging haber --order largest --delta 0.2 --max-age 5 --job-size 16", "--budget-ms 5",
-        "--lobes diffuse --method path --spp 1"}) {
+        "--lobes diffuse --method path --spp 1", "--diffuse burley --method path --spp 1"}) {
     for (const char* name : {"picture.png", "picture.exr"}) {
       std::filesystem::remove(output(name));
       const Ran ran = saccade("render " + kCornell + kQuick + extra + " -o " + quoted(output(name)));
