@@ -96,8 +96,8 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->group(group);
   command
       .add_option("--aging", o.aging, "Test that cached samples must pass: haber, the paper's section 4.5")
-      ->check(CLI::IsMember({"haber"}))
-      ->capture_default_str()
+      ->transform(CLI::CheckedTransformer(std::map<std::string, AgingTest>{{"haber", AgingTest::haber}}))
+      ->default_str("haber")
       ->group(group);
   command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")
       ->check(CLI::Range(0.0, 2.0))

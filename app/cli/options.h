@@ -39,9 +39,14 @@ struct RunOptions {
   std::string statsFile;
 };
 
+/// What cached samples must pass to be shown again.
+enum class AgingTest {
+  haber  ///< the paper's section 4.5
+};
+
 struct CorrectiveOptions {
   attention::AttentionOptions attention;
-  std::string aging = "haber";  ///< the one there is; scripts name it
+  AgingTest aging = AgingTest::haber;
   float delta = 0.1f;
   int nMin = 10;
   int maxAge = 30;
