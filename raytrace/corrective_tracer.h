@@ -20,7 +20,8 @@ struct CorrectiveOptions {
   static constexpr int kMaxGlossyRays = 4;
   std::uint32_t seed = 1;
   int samplesPerPixel = 1;  ///< sub-samples; all through the pixel's centre
-  int glossyRays = 2;       ///< rays of a rough lobe at the first hit, 1..kMaxGlossyRays; 1 deeper
+  int glossyRays = 3;  ///< rays of a rough lobe at the first hit; 1 deeper. Gallery: 27,000 samples in 50 ms
+                       ///< (2: 34,000; 4: 22,000)
 };
 
 class CorrectiveTracer {

@@ -92,12 +92,12 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       .add_option("--order", o.attention.order,
                   "Order of the corrections: attention, task, random, scanline, largest")
       ->transform(CLI::CheckedTransformer(kOrders))
-      ->default_str("attention")
+      ->option_text("NAME [attention]")
       ->group(group);
   command
       .add_option("--aging", o.aging, "Test that cached samples must pass: haber, the paper's section 4.5")
       ->transform(CLI::CheckedTransformer(std::map<std::string, AgingTest>{{"haber", AgingTest::haber}}))
-      ->default_str("haber")
+      ->option_text("NAME [haber]")
       ->group(group);
   command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")
       ->check(CLI::Range(0.0, 2.0))
