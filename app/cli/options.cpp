@@ -23,6 +23,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       .add_option("--light", o.load.lights,
                   "Add a light: point:pos=x,y,z,power=r,g,b | spot:... | directional:... | "
                   "panel:at=x,y,z,size=w,h,radiance=r,g,b")
+      ->allow_extra_args(false)  // or it would swallow the scene's name behind it
       ->group(group);
   command.add_option("--unit-scale", o.load.unitScale, "Metres per unit of the file")
       ->check(CLI::PositiveNumber)

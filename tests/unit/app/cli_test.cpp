@@ -94,6 +94,14 @@ TEST(Cli, HelpNamesEveryCommandAndEveryOptionHasText) {
   }
 }
 
+TEST(Cli, LightsMayStandBeforeTheScene) {
+  const Ran ran = saccade(
+      "info --json --light point:pos=0,1.5,0,power=9,9,9 --light directional:dir=0,-1,0,irradiance=1,1,1 " +
+      kCornell);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(nlohmann::json::parse(ran.out)["lights"], 3);
+}
+
 TEST(Cli, InfoAsJsonHasThePromisedKeys) {
   const Ran ran = saccade("info " + kCornell + " --json");
   ASSERT_EQ(ran.status, 0) << ran.err;
