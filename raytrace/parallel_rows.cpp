@@ -1,5 +1,6 @@
 #include "raytrace/parallel_rows.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -60,6 +61,7 @@ void parallelRows(int height, int threads, const core::Progress& progress,
   Rows rows(height, progress, row);
   {
     std::vector<std::jthread> workers;
+    workers.reserve(static_cast<std::size_t>(std::max(0, threads)));
     for (int i = 0; i < threads; ++i) workers.emplace_back([&rows, i] { rows.work(i); });
     if (threads <= 0) rows.work(0);
   }

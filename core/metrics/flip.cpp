@@ -94,6 +94,7 @@ std::vector<double> gaussian(double perSquare, int radius) {
 
 std::vector<float> scaled(const std::vector<double>& weights, double factor) {
   std::vector<float> out;
+  out.reserve(weights.size());
   for (double w : weights) out.push_back(static_cast<float>(w * factor));
   return out;
 }
@@ -143,6 +144,7 @@ std::vector<float> normalisedBySign(const std::vector<double>& weights) {
   double positive = 0, negative = 0;
   for (double w : weights) (w > 0 ? positive : negative) += w;
   std::vector<float> out;
+  out.reserve(weights.size());
   for (double w : weights) out.push_back(static_cast<float>(w / (w > 0 ? positive : -negative)));
   return out;
 }

@@ -21,7 +21,7 @@ fs::path confinedFile(const fs::path& folder, const std::string& relative, const
   std::error_code failed;
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, failed);
   if (failed) refuse("cannot be looked up: " + failed.message());
-  const fs::path real = fs::canonical(root / named, failed);
+  fs::path real = fs::canonical(root / named, failed);
   if (failed) refuse("does not exist beside the scene");
   const auto [rootEnd, ignored] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
   if (rootEnd != root.end()) refuse("leaves the scene's folder through a link");

@@ -282,6 +282,7 @@ std::vector<double> candidateAngles(const Topology& mesh, const Chart& chart,
   for (const std::uint32_t t : chart.triangles) mark[t] = kNone;
   std::stable_sort(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.weight > b.weight; });
   std::vector<double> angles;
+  angles.reserve(10);
   for (int i = 0; i < 4; ++i) angles.push_back(bins[i].angle);
   for (int i = 0; i < 6; ++i) angles.push_back(i * core::kPi / 12);
   return angles;

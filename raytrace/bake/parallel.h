@@ -58,6 +58,7 @@ void parallelFor(int threads, std::size_t count, const core::Progress& progress,
     run();
   } else {
     std::vector<std::jthread> pool;
+    pool.reserve(static_cast<std::size_t>(threads));
     for (int t = 0; t < threads; ++t) pool.emplace_back(run);
   }
   if (failure) std::rethrow_exception(failure);
