@@ -52,6 +52,7 @@ std::vector<EGLDisplay> deviceDisplays() {
   queryDevices(count, devices.data(), &count);
   devices.resize(static_cast<std::size_t>(count));
   std::vector<EGLDisplay> displays;
+  displays.reserve(devices.size());
   for (EGLDeviceEXT device : devices) {
     displays.push_back(getDisplay(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
   }

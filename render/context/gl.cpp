@@ -26,9 +26,9 @@ const char* errorName(GLenum error) {
   }
 }
 
-std::string site(const std::source_location& where) {
-  const char* slash = std::strrchr(where.file_name(), '/');
-  return std::string(slash ? slash + 1 : where.file_name()) + ":" + std::to_string(where.line());
+std::string site(const char* file, int line) {
+  const char* slash = std::strrchr(file, '/');
+  return std::string(slash ? slash + 1 : file) + ":" + std::to_string(line);
 }
 
 GLuint compileStage(const Gl& gl, const std::string& name, GLenum stage, const std::string& source) {
@@ -49,18 +49,18 @@ GLuint compileStage(const Gl& gl, const std::string& name, GLenum stage, const s
 
 }  // namespace
 
-void checkGl(const Gl& gl, const char* stage, const std::source_location& where) {
+void checkGl(const Gl& gl, const char* stage, const char* file, int line) {
   const GLenum error = gl.GetError();
   // The context reports each error until it is fetched: empty it, so that the next stage is judged alone.
   for (int i = 0; error != GL_NO_ERROR && i < 16 && gl.GetError() != GL_NO_ERROR; ++i) continue;
   if (error != GL_NO_ERROR) {
     const std::string detail = gl.lastMessage.empty() ? "" : ": " + gl.lastMessage;
     gl.lastMessage.clear();
-    throw core::Error(std::string("OpenGL failed in ") + stage + " (" + site(where) +
+    throw core::Error(std::string("OpenGL failed in ") + stage + " (" + site(file, line) +
                       "): " + errorName(error) + detail);
   }
   if (gl.GetGraphicsResetStatus && gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
-    throw core::Error(std::string("the OpenGL context was lost in ") + stage + " (" + site(where) +
+    throw core::Error(std::string("the OpenGL context was lost in ") + stage + " (" + site(file, line) +
                       "): the graphics driver was reset; start the program again");
   }
 }

@@ -89,7 +89,7 @@ void GlContext::initialize() {
   }
   // Asked by version, because a function that the context does not have may still have an address.
 #define SACCADE_GL_OFFER(since, type, function) \
-  if (version >= since) SACCADE_GL_LOAD(type, function)
+  if (version >= (since)) SACCADE_GL_LOAD(type, function)
   SACCADE_GL_OPTIONAL_FUNCTIONS(SACCADE_GL_OFFER)
 #undef SACCADE_GL_OFFER
 #undef SACCADE_GL_LOAD

@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
-#include <ranges>
 #include <utility>
 
 namespace saccade::render {
@@ -273,7 +272,7 @@ SampleCache::WarpResult SampleCache::warp(const core::FrameSnapshot& frame, Corr
   WarpResult result;
   claimed_.assign(frame.depth.size(), 0);
   for (auto& list : visible_) list.clear();
-  for (Generation& g : std::views::reverse(generations_)) findVisible(g, frame, result);
+  for (std::size_t i = generations_.size(); i-- > 0;) findVisible(generations_[i], frame, result);
   // The picture does not depend on the order. Fine before coarse and young before old lets the layer pass
   // over whole tiles of the large splats.
   for (int level = kMaxLevel; level >= 1; --level) {
