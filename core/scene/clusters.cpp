@@ -4,29 +4,13 @@
 #include <numeric>
 
 #include "core/scene/mesh_repair.h"
+#include "core/union_find.h"
 
 namespace saccade::core {
 namespace {
 
 /// A gap separates two groups when it is wider than this part of their common box's longest side.
 constexpr float kGapOfExtent = 0.1f;
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t x) {
-    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
-    return x;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Part {
   Bounds bounds;

@@ -5,36 +5,17 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "core/union_find.h"
 #include "raytrace/bake/cell_clip.h"
 #include "raytrace/bake/charts.h"
 
 namespace saccade::raytrace {
 namespace {
 
-/// Union-find over a mesh's vertices.
-class Components {
- public:
-  explicit Components(std::size_t count) : parent_(count) {
-    for (std::size_t i = 0; i < count; ++i) parent_[i] = static_cast<std::uint32_t>(i);
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 /// Chart number of each triangle, from 0: triangles are of one chart when they share a vertex or a place in
 /// the atlas. Charts are found from the uv alone so that maps read from a file need no list of them.
 std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
-  Components parts(mesh.positions.size());
+  core::UnionFind parts(mesh.positions.size());
   std::unordered_map<std::uint64_t, std::uint32_t> byUv;
   byUv.reserve(mesh.lightmapUv.size());
   for (std::size_t v = 0; v < mesh.lightmapUv.size(); ++v) {
@@ -42,11 +23,11 @@ std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
     const std::uint64_t key =
         (std::uint64_t{std::bit_cast<std::uint32_t>(uv.x)} << 32) | std::bit_cast<std::uint32_t>(uv.y);
     const auto self = static_cast<std::uint32_t>(v);
-    parts.join(self, byUv.try_emplace(key, self).first->second);
+    parts.unite(self, byUv.try_emplace(key, self).first->second);
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    parts.join(mesh.indices[i], mesh.indices[i + 1]);
-    parts.join(mesh.indices[i], mesh.indices[i + 2]);
+    parts.unite(mesh.indices[i], mesh.indices[i + 1]);
+    parts.unite(mesh.indices[i], mesh.indices[i + 2]);
   }
   std::vector<std::int32_t> number(mesh.positions.size(), -1), out(mesh.triangleCount());
   std::int32_t next = 0;
