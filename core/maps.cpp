@@ -165,11 +165,11 @@ void addTexture(ContentHash& hash, const Texture& t) {
 }
 
 /// Corner by corner, so that splitting vertices along chart borders changes nothing.
-void addObject(ContentHash& hash, const Object& o) {
+void addObject(ContentHash& hash, const Scene& scene, const Object& o) {
   hash.add(o.material);
   hash.add(o.closed);
   hash.add(o.id != 0);
-  const Mesh& m = o.mesh;
+  const Mesh& m = scene.meshOf(o);
   hash.add(static_cast<std::uint64_t>(m.indices.size()));
   for (const bool has :
        {m.normals.empty(), m.tangents.empty(), m.uv0.empty(), m.uv1.empty(), m.colors.empty()})
@@ -208,7 +208,7 @@ void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts) {
     throw Error(scene.path + ": the charts are for " + std::to_string(charts.size()) +
                 " objects, the scene has " + std::to_string(scene.objects.size()));
   for (std::size_t o = 0; o < charts.size(); ++o) {
-    Mesh& mesh = scene.objects[o].mesh;
+    Mesh& mesh = scene.meshOf(scene.objects[o]);
     const ObjectCharts& c = charts[o];
     const bool fits = c.indices.size() == mesh.indices.size() && c.uv.size() == c.sourceVertex.size() &&
                       std::all_of(c.sourceVertex.begin(), c.sourceVertex.end(),
@@ -225,7 +225,7 @@ std::uint64_t sceneKey(const Scene& scene) {
   ContentHash hash;
   hash.add(kVersion);
   hash.add(static_cast<std::uint64_t>(scene.objects.size()));
-  for (const Object& o : scene.objects) addObject(hash, o);
+  for (const Object& o : scene.objects) addObject(hash, scene, o);
   hash.add(static_cast<std::uint64_t>(scene.materials.size()));
   for (const Material& m : scene.materials) addMaterial(hash, m);
   hash.add(static_cast<std::uint64_t>(scene.textures.size()));

@@ -18,14 +18,14 @@ auto interpolate(const Array& v, float u, float b) {
 template <class T>
 T interpolateMesh(const World& world, const Hit& hit, std::uint32_t object, const std::vector<T>& values) {
   const std::uint32_t* corner =
-      &world.scene().objects[object].mesh.indices[3 * (hit.triangle - world.firstTriangle(object))];
+      &world.meshOf(object).indices[3 * (hit.triangle - world.firstTriangle(object))];
   return values[corner[0]] * (1 - hit.u - hit.v) + values[corner[1]] * hit.u + values[corner[2]] * hit.v;
 }
 
 Vec2 textureUv(const World& world, const Hit& hit, const TriangleRecord& record, const Vec2& uv0,
                const TextureView& texture) {
   if (texture.uvSet == 0) return uv0;
-  const core::Mesh& mesh = world.scene().objects[record.object].mesh;
+  const core::Mesh& mesh = world.meshOf(record.object);
   return mesh.uv1.empty() ? uv0 : interpolateMesh(world, hit, record.object, mesh.uv1);
 }
 
@@ -67,8 +67,7 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
   p.diffuseFactor = m.diffuseFactor;
   if (m.textured) applyTextures(world, hit, record, uv0, m, p);
   if (world.hasColors(hit.object)) {
-    const core::Vec4 c =
-        interpolateMesh(world, hit, record.object, world.scene().objects[record.object].mesh.colors);
+    const core::Vec4 c = interpolateMesh(world, hit, record.object, world.meshOf(record.object).colors);
     p.baseColor *= Vec3(c);
     p.coverage *= c.w;
   }
@@ -79,7 +78,7 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
 /// Tangent-space normal, world; the interpolated one where the mesh has no tangents.
 Vec3 mappedNormal(const World& world, const Hit& hit, const TriangleRecord& record, const CompiledMaterial& m,
                   const Vec3& ns, const Vec2& uv0) {
-  const core::Mesh& mesh = world.scene().objects[record.object].mesh;
+  const core::Mesh& mesh = world.meshOf(record.object);
   if (mesh.tangents.empty()) return ns;
   const core::Vec4 tangent = interpolateMesh(world, hit, record.object, mesh.tangents);
   const core::Vec4 texel = m.normalTexture.sample(textureUv(world, hit, record, uv0, m.normalTexture));

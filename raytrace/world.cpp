@@ -42,7 +42,7 @@ float alphaAt(const World& world, std::uint32_t triangle, float u, float v) {
   const TriangleRecord& r = world.record(triangle);
   const CompiledMaterial& m = world.materialOf(r.object);
   float alpha = m.alpha;
-  const core::Mesh& mesh = world.scene().objects[r.object].mesh;
+  const core::Mesh& mesh = world.meshOf(r.object);
   const std::uint32_t* corner = &mesh.indices[3 * (triangle - world.firstTriangle(r.object))];
   if (m.baseColorTexture) {
     const bool second = m.baseColorTexture.uvSet == 1 && !mesh.uv1.empty();
@@ -221,7 +221,7 @@ void World::buildRecords() {
   objectOfId_.assign(scene_.idCount() + 1, 0);
   for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
     const core::Object& object = scene_.objects[o];
-    const core::Mesh& mesh = object.mesh;
+    const core::Mesh& mesh = scene_.meshOf(object);
     firstTriangle_.push_back(static_cast<std::uint32_t>(records_.size()));
     flags_.push_back(static_cast<std::uint8_t>((object.closed ? kClosed : 0) |
                                                (object.id == 0 ? kDiffuse : 0) |
@@ -258,7 +258,7 @@ void World::buildTrees() {
   const std::vector<bool> duplicate = findDuplicates(shapes_);
 
   for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
-    const core::Mesh& mesh = scene_.objects[o].mesh;
+    const core::Mesh& mesh = meshOf(o);
     RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));

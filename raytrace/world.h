@@ -71,6 +71,7 @@ class World {
   World& operator=(const World&) = delete;
 
   const core::Scene& scene() const { return scene_; }
+  const core::Mesh& meshOf(std::uint32_t object) const { return scene_.meshOf(scene_.objects[object]); }
   int recursionDepth() const { return recursionDepth_; }
   const Lights& lights() const { return *lights_; }
 

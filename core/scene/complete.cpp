@@ -20,9 +20,9 @@ void repairAll(Scene& scene) {
   RepairCounts counts;
   for (Object& o : scene.objects) {
     const Material& m = materialOf(scene, o);
-    repairMesh(o.mesh, static_cast<bool>(m.normalTexture), m.normalTexture.uvSet, counts);
+    repairMesh(scene.meshOf(o), static_cast<bool>(m.normalTexture), m.normalTexture.uvSet, counts);
   }
-  std::erase_if(scene.objects, [](const Object& o) { return o.mesh.indices.empty(); });
+  std::erase_if(scene.objects, [&](const Object& o) { return scene.meshOf(o).indices.empty(); });
   const auto warn = [&](std::uint64_t n, const char* what) {
     if (n > 0) scene.warnings.push_back(std::to_string(n) + what);
   };
@@ -43,10 +43,12 @@ void splitIntoClusters(Scene& scene) {
     return std::tie(a.node, a.primitive) < std::tie(b.node, b.primitive);
   });
   std::vector<Object> out;
+  std::vector<Mesh> meshes;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     Object& whole = scene.objects[i];
     if (nodeHasSeveral(scene.objects, i)) whole.name += "/" + std::to_string(whole.primitive);
-    const std::vector<Cluster> clusters = clusterMesh(whole.mesh, materialOf(scene, whole).transmission > 0);
+    const std::vector<Cluster> clusters =
+        clusterMesh(scene.meshOf(whole), materialOf(scene, whole).transmission > 0);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       Object part;
       part.name = clusters.size() > 1 ? whole.name + "#" + std::to_string(c) : whole.name;
@@ -55,18 +57,22 @@ void splitIntoClusters(Scene& scene) {
       part.cluster = static_cast<int>(c);
       part.material = whole.material;
       part.closed = clusters[c].closed;
-      part.mesh = clusters.size() > 1 ? subMesh(whole.mesh, clusters[c].triangles) : std::move(whole.mesh);
+      part.mesh = static_cast<std::uint32_t>(meshes.size());
+      Mesh& mesh = scene.meshOf(whole);
+      meshes.push_back(clusters.size() > 1 ? subMesh(mesh, clusters[c].triangles) : std::move(mesh));
       out.push_back(std::move(part));
     }
   }
   scene.objects = std::move(out);
+  scene.meshes = std::move(meshes);
 }
 
 void findBounds(Scene& scene) {
   scene.bounds = Bounds{};
   for (Object& o : scene.objects) {
     o.bounds = Bounds{};
-    for (const std::uint32_t i : o.mesh.indices) o.bounds.add(o.mesh.positions[i]);
+    const Mesh& mesh = scene.meshOf(o);
+    for (const std::uint32_t i : mesh.indices) o.bounds.add(mesh.positions[i]);
     scene.bounds.add(o.bounds);
   }
 }

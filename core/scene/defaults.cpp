@@ -24,8 +24,8 @@ struct Hit {
 std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& direction) {
   std::optional<Hit> nearest;
   for (const Object& o : scene.objects) {
-    const auto& p = o.mesh.positions;
-    const auto& index = o.mesh.indices;
+    const auto& p = scene.meshOf(o).positions;
+    const auto& index = scene.meshOf(o).indices;
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
       const Vec3 a = p[index[i]], e1 = p[index[i + 1]] - a, e2 = p[index[i + 2]] - a;
       const Vec3 across = glm::cross(direction, e2);
@@ -171,11 +171,12 @@ void addPanel(Scene& scene, const std::string& name, const Vec3& center, Vec2 si
   object.name = name;
   object.node = static_cast<int>(scene.nodes.size()) - 1;
   object.material = static_cast<int>(scene.materials.size()) - 1;
+  Mesh mesh;
   for (const Vec2 corner : {Vec2(-0.5f, -0.5f), Vec2(0.5f, -0.5f), Vec2(0.5f, 0.5f), Vec2(-0.5f, 0.5f)})
-    object.mesh.positions.push_back(center + corner.x * size.x * u + corner.y * size.y * v);
-  object.mesh.normals.assign(4, n);
-  object.mesh.indices = {0, 1, 2, 0, 2, 3};
-  scene.objects.push_back(std::move(object));
+    mesh.positions.push_back(center + corner.x * size.x * u + corner.y * size.y * v);
+  mesh.normals.assign(4, n);
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  scene.add(std::move(object), std::move(mesh));
 }
 
 void addDefaultLight(Scene& scene, const Surroundings& around) {

@@ -24,7 +24,8 @@ struct LoadOptions {
 Scene loadScene(const std::filesystem::path& file, const LoadOptions& options);
 
 /// Everything after parsing, for scenes made in memory (tests, generators): clusters, closedness, ids,
-/// bounds, hierarchy, default light and camera. Objects must hold mesh, material, name, node, primitive.
+/// bounds, hierarchy, default light and camera. Objects must hold mesh, material, name, node, primitive
+/// (Scene::add).
 void completeScene(Scene& scene, const LoadOptions& options);
 
 /// Adds what one --light option describes: point:pos=x,y,z,power=r,g,b | spot:... |

@@ -170,18 +170,18 @@ void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, 
         continue;
       }
       Object object;
-      object.mesh = localMesh(model, primitive);
-      triangles += object.mesh.triangleCount();
+      Mesh mesh = localMesh(model, primitive);
+      triangles += mesh.triangleCount();
       if (triangles > kMaxTriangles)
         throw Error(scene.path + ": more than " + std::to_string(kMaxTriangles) +
                     " triangles with all instances");
-      toWorld(object.mesh, scene.nodes[static_cast<std::size_t>(n)].localToWorld);
+      toWorld(mesh, scene.nodes[static_cast<std::size_t>(n)].localToWorld);
       object.name = scene.nodes[static_cast<std::size_t>(n)].name;
       object.node = n;
       object.primitive = static_cast<int>(p);
       object.material =
           primitive.material >= 0 ? primitive.material : static_cast<int>(model.materials.size());
-      scene.objects.push_back(std::move(object));
+      scene.add(std::move(object), std::move(mesh));
     }
   }
   if (skipped > 0)

@@ -231,8 +231,7 @@ Scene loadObj(const std::filesystem::path& file, const LoadOptions& options) {
       object.node = static_cast<int>(scene.nodes.size()) - 1;
       object.primitive = primitive++;
       object.material = material < 0 ? standard : material;
-      object.mesh = meshOf(corners, parsed.attributes, options.unitScale);
-      scene.objects.push_back(std::move(object));
+      scene.add(std::move(object), meshOf(corners, parsed.attributes, options.unitScale));
     }
   }
   if (dropped > 0)

@@ -54,7 +54,7 @@ Census count(const Scene& scene) {
   for (const Object& o : scene.objects) {
     const Material& m = scene.materials[static_cast<std::size_t>(o.material)];
     const MaterialMeans& mean = means[static_cast<std::size_t>(o.material)];
-    const double area = areaOf(o.mesh);
+    const double area = areaOf(scene.meshOf(o));
     c.area += area;
     c.alpha += m.alphaMode != AlphaMode::opaque;
     c.emitting += m.emits();

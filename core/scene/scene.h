@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/camera.h"
@@ -100,8 +101,11 @@ struct Material {
   bool emits() const { return !unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0); }
 };
 
-/// Triangles; every attribute array is empty or as long as positions. World space in Object.
+/// Triangles; every attribute array is empty or as long as positions.
 struct Mesh {
+  /// In its own space, for several objects to place (Object::meshToWorld). Else in world space and used by
+  /// one object.
+  bool instanced = false;
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;   ///< unit, always filled by the loader (flat ones where the file has none)
   std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when the material has a normal map
@@ -131,8 +135,13 @@ struct Object {
   std::uint32_t id = 0;  ///< 1.. for non-diffuse objects, in order of (node, primitive, cluster); 0 = diffuse
   bool closed = false;   ///< watertight: transmission refracts as a solid, else as a thin sheet
   float nonDiffuseAlbedo = 0;  ///< cosine-averaged albedo of the lobes other than Lambert, [0, 1]
-  Mesh mesh;                   ///< world space
-  Bounds bounds;
+  std::uint32_t mesh = 0;      ///< index into Scene::meshes
+  /// Identity unless the mesh is instanced. A negative determinant turns triangles over: their front is then
+  /// where they are seen clockwise.
+  Mat4 meshToWorld{1};
+  /// Place in the illumination map atlas: uv = mesh uv * xy + zw.
+  Vec4 lightmapScaleOffset{1, 1, 0, 0};
+  Bounds bounds;  ///< world space
 };
 
 /// Punctual light, KHR_lights_punctual; 1 cd = 1 W/sr, 1 lx = 1 W/m^2.
@@ -168,6 +177,7 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Node> nodes;
+  std::vector<Mesh> meshes;
   std::vector<Object> objects;
   std::vector<PunctualLight> lights;
   std::shared_ptr<const Environment> environment;  ///< null: black
@@ -179,9 +189,18 @@ struct Scene {
   bool defaultCamera = false;  ///< the scene had no camera: cameras[0] frames the bounds
   Warnings warnings;
 
+  const Mesh& meshOf(const Object& object) const { return meshes[object.mesh]; }
+  Mesh& meshOf(const Object& object) { return meshes[object.mesh]; }
+  /// Adds an object with a mesh of its own.
+  Object& add(Object object, Mesh mesh) {
+    object.mesh = static_cast<std::uint32_t>(meshes.size());
+    meshes.push_back(std::move(mesh));
+    return objects.emplace_back(std::move(object));
+  }
+  /// Triangles that are there to see, instances counted one by one.
   std::size_t triangleCount() const {
     std::size_t n = 0;
-    for (const Object& o : objects) n += o.mesh.triangleCount();
+    for (const Object& o : objects) n += meshOf(o).triangleCount();
     return n;
   }
   /// Number of non-diffuse objects = largest id.

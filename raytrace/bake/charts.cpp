@@ -87,7 +87,7 @@ std::vector<PlacedChart> clusterScene(const core::Scene& scene, double& area) {
       shared = true;
       continue;
     }
-    for (Chart& chart : clusterMesh(object.mesh)) {
+    for (Chart& chart : clusterMesh(scene.meshOf(object))) {
       const glm::dvec2 extent = chart.hi - chart.lo;
       area += extent.x * extent.y;
       charts.push_back({o, std::move(chart), 0, 0, 0, 0});
@@ -175,8 +175,8 @@ ChartAtlas makeCharts(const core::Scene& scene, const core::Plan& plan, int maxA
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const core::Object& object = scene.objects[o];
     const bool lit = showsIrradiance(scene.materials[static_cast<std::size_t>(object.material)]);
-    out.charts.push_back(lit ? cutObject(object.mesh, placed, o, cursor, out.size)
-                             : shareTexel(object.mesh, placed.back(), out.size));
+    out.charts.push_back(lit ? cutObject(scene.meshOf(object), placed, o, cursor, out.size)
+                             : shareTexel(scene.meshOf(object), placed.back(), out.size));
   }
   return out;
 }

@@ -65,11 +65,12 @@ void TexelMap::findCharts() {
     const core::Object& object = scene_.objects[o];
     const core::Material& material = scene_.materials[static_cast<std::size_t>(object.material)];
     if (!showsIrradiance(material)) continue;
-    if (object.mesh.lightmapUv.size() != object.mesh.positions.size()) {
+    const core::Mesh& mesh = scene_.meshOf(object);
+    if (mesh.lightmapUv.size() != mesh.positions.size()) {
       throw core::Error("illumination maps: object '" + object.name +
                         "' has no charts; call applyCharts first");
     }
-    chartOfTriangle_[o] = chartsOfMesh(object.mesh);
+    chartOfTriangle_[o] = chartsOfMesh(mesh);
     const auto base = static_cast<std::int32_t>(charts_.size());
     for (std::int32_t& chart : chartOfTriangle_[o]) {
       chart += base;
@@ -84,7 +85,7 @@ void TexelMap::findCharts() {
 std::vector<TexelMap::Placed> TexelMap::placeFragments() const {
   std::vector<Placed> placed;
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
-    const core::Mesh& mesh = scene_.objects[o].mesh;
+    const core::Mesh& mesh = scene_.meshOf(scene_.objects[o]);
     for (std::size_t t = 0; t < chartOfTriangle_[o].size(); ++t) {
       const Plane2 a = texelPosition(mesh, 3 * t, size_), b = texelPosition(mesh, 3 * t + 1, size_),
                    c = texelPosition(mesh, 3 * t + 2, size_);
@@ -137,7 +138,7 @@ MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const 
     if (rest < f.area) break;
     rest -= f.area;
   }
-  const core::Mesh& mesh = scene_.objects[part->object].mesh;
+  const core::Mesh& mesh = scene_.meshOf(scene_.objects[part->object]);
   const std::size_t corner = std::size_t{3} * part->triangle;
   const Plane2 a = texelPosition(mesh, corner, size_), b = texelPosition(mesh, corner + 1, size_),
                c = texelPosition(mesh, corner + 2, size_);

@@ -181,10 +181,10 @@ Features featuresOf(const core::Scene& scene, const core::Object& object) {
   if (m.alphaMode == core::AlphaMode::blend) f |= kBlend;
   if (diffuse || f != 0) {
     addTexture(f, m.baseColorTexture, kBaseTexture, kBaseUv1);
-    if (!object.mesh.colors.empty()) f |= kVertexColor;
+    if (!scene.meshOf(object).colors.empty()) f |= kVertexColor;
   }
   if (diffuse && !m.unlit) {
-    if (!object.mesh.lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
+    if (!scene.meshOf(object).lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
     if (m.metallic != 0) addTexture(f, m.metallicRoughnessTexture, kMetallicTexture, kMetallicUv1);
     if (m.transmission != 0) {
       addTexture(f, m.transmissionTexture, kTransmissionTexture, kTransmissionUv1);

@@ -50,7 +50,7 @@ void describeLayout(const Gl& gl, std::uint32_t attributes) {
 
 bool isSolid(const core::Scene& scene, const core::Object& object) {
   const bool opaque = scene.materials[object.material].alphaMode == core::AlphaMode::opaque;
-  return opaque && object.closed && isOutwardSolid(object.mesh);
+  return opaque && object.closed && isOutwardSolid(scene.meshOf(object));
 }
 
 /// As the tracer has it: what refracts is seen from inside too.
@@ -69,17 +69,18 @@ Geometry::Geometry(const Gl& gl, const core::Scene& scene) {
   std::size_t indices = 0, vertices = 0;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const core::Object& object = scene.objects[i];
-    if (object.mesh.indices.empty()) continue;
+    const core::Mesh& mesh = scene.meshOf(object);
+    if (mesh.indices.empty()) continue;
     DrawItem item;
     item.object = i;
     item.features = featuresOf(scene, object);
     item.attributes = attributesOf(item.features);
-    item.indexCount = static_cast<std::uint32_t>(object.mesh.indices.size());
+    item.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
     item.solid = isSolid(scene, object);
     item.oneSided = isOneSided(scene.materials[object.material]);
     items_.push_back(item);
-    indices += object.mesh.indices.size();
-    vertices += object.mesh.positions.size();
+    indices += mesh.indices.size();
+    vertices += mesh.positions.size();
   }
   constexpr std::size_t kLimit = std::numeric_limits<std::uint32_t>::max() / sizeof(std::uint32_t);
   if (indices > kLimit || vertices > kLimit) {
@@ -106,7 +107,7 @@ void Geometry::upload(const Gl& gl, const core::Scene& scene) {
   std::map<std::uint32_t, std::vector<float>> vertices;
   std::vector<std::uint32_t> indices;
   for (DrawItem& item : items_) {
-    const core::Mesh& mesh = scene.objects[item.object].mesh;
+    const core::Mesh& mesh = scene.meshOf(scene.objects[item.object]);
     std::vector<float>& out = vertices[item.attributes];
     const auto base = static_cast<std::uint32_t>(out.size() / strideFloats(item.attributes));
     item.firstIndex = static_cast<std::uint32_t>(indices.size());

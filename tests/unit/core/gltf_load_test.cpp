@@ -35,8 +35,8 @@ TEST(GltfLoad, ATriangle) {
   ASSERT_GE(scene.objects.size(), 1u);
   const Object& o = scene.objects[0];
   EXPECT_EQ(o.name, "thing");
-  EXPECT_EQ(o.mesh.triangleCount(), 1u);
-  EXPECT_EQ(o.mesh.normals[0], Vec3(0, 0, 1));
+  EXPECT_EQ(scene.meshOf(o).triangleCount(), 1u);
+  EXPECT_EQ(scene.meshOf(o).normals[0], Vec3(0, 0, 1));
   EXPECT_EQ(o.bounds.hi, Vec3(1, 1, 0));
   EXPECT_FALSE(o.closed);
   EXPECT_TRUE(scene.defaultCamera);
@@ -54,7 +54,7 @@ TEST(GltfLoad, IndicesOfEveryWidthStripsAndFans) {
     b.primitive()["indices"] = indices;
     b.primitive()["mode"] = 5;
     const Scene scene = load(b);
-    const Mesh& m = scene.objects[0].mesh;
+    const Mesh& m = scene.meshes[0];
     ASSERT_EQ(m.triangleCount(), 2u);
     for (const Vec3& n : m.normals)
       EXPECT_EQ(n, Vec3(0, 0, 1));  // both triangles of the strip face the same way
@@ -63,15 +63,15 @@ TEST(GltfLoad, IndicesOfEveryWidthStripsAndFans) {
   fan.primitive()["attributes"]["POSITION"] = fan.floats("VEC3", {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
   fan.primitive()["mode"] = 6;
   const Scene scene = load(fan);
-  ASSERT_EQ(scene.objects[0].mesh.triangleCount(), 2u);
-  for (const Vec3& n : scene.objects[0].mesh.normals) EXPECT_EQ(n, Vec3(0, 0, 1));
+  ASSERT_EQ(scene.meshes[0].triangleCount(), 2u);
+  for (const Vec3& n : scene.meshes[0].normals) EXPECT_EQ(n, Vec3(0, 0, 1));
 }
 
 TEST(GltfLoad, IndexBeyondTheVerticesIsDroppedAndCounted) {
   GltfBuilder b;
   b.primitive()["indices"] = b.accessor<std::uint8_t>("SCALAR", 5121, {0, 1, 2, 0, 1, 200});
   const Scene scene = load(b);
-  EXPECT_EQ(scene.objects[0].mesh.triangleCount(), 1u);
+  EXPECT_EQ(scene.meshes[0].triangleCount(), 1u);
   EXPECT_TRUE(warned(scene, "1 triangles were dropped"));
 }
 
@@ -97,7 +97,7 @@ TEST(GltfLoad, SparseAndNormalizedAccessors) {
   b.primitive()["attributes"]["COLOR_0"] =
       b.accessor<std::uint8_t>("VEC4", 5121, {255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0}, true);
   const Scene scene = load(b);
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   EXPECT_EQ(m.positions[1], Vec3(5, 0, 0));
   EXPECT_EQ(m.uv0[0], Vec2(0, 1));
   EXPECT_EQ(m.uv0[1], Vec2(1, 0));
@@ -114,7 +114,7 @@ TEST(GltfLoad, StridedViewsAndViewlessAccessors) {
   b.primitive()["attributes"]["TEXCOORD_0"] = 1;
   const Scene scene = load(b);
   EXPECT_EQ(scene.objects[0].bounds.hi, Vec3(2, 2, 0));
-  EXPECT_EQ(scene.objects[0].mesh.uv0[2], Vec2(0));
+  EXPECT_EQ(scene.meshes[0].uv0[2], Vec2(0));
 }
 
 TEST(GltfLoad, TransformsComposeAndScaleToMetres) {
@@ -125,7 +125,7 @@ TEST(GltfLoad, TransformsComposeAndScaleToMetres) {
   LoadOptions options;
   options.unitScale = 0.1f;
   const Scene scene = load(b, options);
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   EXPECT_LT(glm::length(m.positions[0] - Vec3(0.1f, 0, 0)), 1e-6f);
   EXPECT_LT(glm::length(m.positions[1] - Vec3(0.1f, 0, -0.2f)), 1e-6f);  // x turns to -z
   EXPECT_LT(glm::length(m.normals[0] - Vec3(1, 0, 0)), 1e-6f);
@@ -136,7 +136,7 @@ TEST(GltfLoad, MirroredNodesKeepTheirFronts) {
   b.primitive()["attributes"]["NORMAL"] = b.floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
   b.json["nodes"][0]["scale"] = {-1, 1, 1};
   const Scene scene = load(b);
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   EXPECT_EQ(m.positions[1].x, -1);
   EXPECT_EQ(faceNormal(m), Vec3(0, 0, 1));
   EXPECT_EQ(m.normals[0], Vec3(0, 0, 1));
@@ -148,7 +148,7 @@ TEST(GltfLoad, UnevenScaleTiltsNormalsRight) {
   b.primitive()["attributes"]["NORMAL"] = b.floats("VEC3", {-1, -1, 0, -1, -1, 0, -1, -1, 0});
   b.json["nodes"][0]["scale"] = {4, 1, 1};
   const Scene scene = load(b);
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   EXPECT_GT(glm::dot(m.normals[0], faceNormal(m)), 1 - 1e-6f);
 }
 
@@ -224,7 +224,7 @@ TEST(GltfLoad, TexturesWithTheirColourSpace) {
   EXPECT_EQ(t.wrapT, Wrap::mirror);
   EXPECT_TRUE(t.nearest);
   EXPECT_EQ(t.image.at(1, 0), (Rgba8{10, 20, 30, 255}));
-  EXPECT_EQ(scene.objects[0].mesh.tangents[0], Vec4(1, 0, 0, 1));  // from the second UV set
+  EXPECT_EQ(scene.meshes[0].tangents[0], Vec4(1, 0, 0, 1));  // from the second UV set
 }
 
 TEST(GltfLoad, CamerasAndLightsFollowTheirNodes) {
@@ -288,7 +288,7 @@ TEST(GltfLoad, GlbAndTextAgreeWhateverTheName) {
   GltfBuilder plain;
   plain.write(folder / "binary.obj");
   const Scene binary = loadScene(folder / "binary.obj", {});
-  EXPECT_EQ(text.objects[0].mesh.positions, binary.objects[0].mesh.positions);
+  EXPECT_EQ(text.meshes[0].positions, binary.meshes[0].positions);
 }
 
 }  // namespace

@@ -112,8 +112,8 @@ TEST(Maps, TexelDecodesAndClamps) {
 Scene room() {
   Scene scene;
   scene.materials = {lambert(), lamp()};
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(1)), 0, 0));
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0, 3, 0), Vec3(1, 4, 1)), 1, 1));
+  addObject(scene, boxMesh(Vec3(0), Vec3(1)), 0, 0);
+  addObject(scene, boxMesh(Vec3(0, 3, 0), Vec3(1, 4, 1)), 1, 1);
   Texture t;
   t.image = ImageRgba8(3, 3);
   scene.textures.push_back(t);
@@ -125,8 +125,8 @@ std::vector<ObjectCharts> cornerCharts(const Scene& scene) {
   std::vector<ObjectCharts> out;
   for (const Object& o : scene.objects) {
     ObjectCharts c;
-    for (std::uint32_t i = 0; i < o.mesh.indices.size(); ++i) {
-      c.sourceVertex.push_back(o.mesh.indices[i]);
+    for (std::uint32_t i = 0; i < scene.meshOf(o).indices.size(); ++i) {
+      c.sourceVertex.push_back(scene.meshOf(o).indices[i]);
       c.uv.emplace_back(static_cast<float>(i) / 100, 0.5f);
       c.indices.push_back(i);
     }
@@ -138,9 +138,9 @@ std::vector<ObjectCharts> cornerCharts(const Scene& scene) {
 TEST(Maps, ChartsCutTheMeshWithoutChangingTheScene) {
   Scene scene = room();
   const std::uint64_t key = sceneKey(scene);
-  const Mesh before = scene.objects[0].mesh;
+  const Mesh before = scene.meshes[0];
   applyCharts(scene, cornerCharts(scene));
-  const Mesh& after = scene.objects[0].mesh;
+  const Mesh& after = scene.meshes[0];
   EXPECT_EQ(after.lightmapUv.size(), after.positions.size());
   ASSERT_EQ(after.indices.size(), before.indices.size());
   for (std::size_t i = 0; i < before.indices.size(); ++i) {
@@ -167,9 +167,9 @@ TEST(SceneKey, DependsOnAllThatLightDoes) {
     change(scene);
     EXPECT_NE(sceneKey(scene), key);
   };
-  differs([](Scene& s) { s.objects[0].mesh.positions[3].x += 1e-6f; });
-  differs([](Scene& s) { s.objects[0].mesh.normals[3] = -s.objects[0].mesh.normals[3]; });
-  differs([](Scene& s) { std::swap(s.objects[0].mesh.indices[0], s.objects[0].mesh.indices[1]); });
+  differs([](Scene& s) { s.meshes[0].positions[3].x += 1e-6f; });
+  differs([](Scene& s) { s.meshes[0].normals[3] = -s.meshes[0].normals[3]; });
+  differs([](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); });
   differs([](Scene& s) { s.objects[0].material = 1; });
   differs([](Scene& s) { s.materials[0].baseColor.y = 0.5f; });
   differs([](Scene& s) { s.materials[0].doubleSided = true; });

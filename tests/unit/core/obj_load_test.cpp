@@ -42,10 +42,10 @@ TEST(ObjLoad, AQuadInMetres) {
   options.unitScale = 0.5f;
   const Scene scene = load(std::string(kQuad) + "f 1 2 3 4\r\n", "", options);
   const Object& o = scene.objects[0];
-  EXPECT_EQ(o.mesh.triangleCount(), 2u);
-  EXPECT_EQ(o.mesh.positions.size(), 4u);  // a plane's corners are shared
+  EXPECT_EQ(scene.meshOf(o).triangleCount(), 2u);
+  EXPECT_EQ(scene.meshOf(o).positions.size(), 4u);  // a plane's corners are shared
   EXPECT_EQ(o.bounds.hi, Vec3(0.5f, 0.5f, 0));
-  for (const Vec3& n : o.mesh.normals) EXPECT_EQ(n, Vec3(0, 0, 1));
+  for (const Vec3& n : scene.meshOf(o).normals) EXPECT_EQ(n, Vec3(0, 0, 1));
 }
 
 TEST(ObjLoad, ShapesAndMaterialsAreObjects) {
@@ -67,7 +67,7 @@ TEST(ObjLoad, EdgesAreKeptAndCurvesAreSmoothed) {
       "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 1 0 1\nv 1.9397 0.34202 0\nv 1.9397 0.34202 1\nv 1.9397 -1 0\nv 1.9397 "
       "-1 1\n"
       "f 1 2 4 3\nf 3 4 6 5\nf 5 6 8 7\n");
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   int blended = 0, sharp = 0;
   for (std::size_t i = 0; i < m.positions.size(); ++i) {
     if (m.positions[i].x == 1) {
@@ -83,14 +83,14 @@ TEST(ObjLoad, EdgesAreKeptAndCurvesAreSmoothed) {
 
 TEST(ObjLoad, GivenNormalsAndTextureCoordinatesAreTaken) {
   const Scene scene = load(std::string(kQuad) + "vt 0 0\nvt 0.25 0.75\nvn 0 1 1\nf 1/1/1 2/2/1 3/1/1\n");
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   EXPECT_LT(glm::length(m.normals[0] - glm::normalize(Vec3(0, 1, 1))), 1e-6f);
   EXPECT_EQ(m.uv0[1], Vec2(0.25f, 0.25f));  // v runs down
 }
 
 TEST(ObjLoad, BadIndicesAreDroppedAndCounted) {
   const Scene scene = load(std::string(kQuad) + "f 1 2 3\nf 1 2 99\nf -9 -8 -7\n");
-  EXPECT_EQ(scene.objects[0].mesh.triangleCount(), 1u);
+  EXPECT_EQ(scene.meshes[0].triangleCount(), 1u);
   EXPECT_TRUE(warned(scene, "dropped"));
   EXPECT_THROW(load(std::string(kQuad) + "f 1 2 99999999999\n"), Error);
 }
@@ -105,7 +105,7 @@ TEST(ObjLoad, OddFilesAreRefusedOrRepaired) {
         "v " + std::to_string(std::cos(i * 0.020944)) + " " + std::to_string(std::sin(i * 0.020944)) + " 0\n";
     face += " " + std::to_string(i + 1);
   }
-  EXPECT_EQ(load(round + face + "\n").objects[0].mesh.triangleCount(), 298u);
+  EXPECT_EQ(load(round + face + "\n").meshes[0].triangleCount(), 298u);
 }
 
 TEST(ObjLoad, MaterialLibrariesStayInTheFolder) {

@@ -17,7 +17,7 @@ Scene sceneOf(const std::vector<Material>& materials) {
   scene.materials = materials;
   for (int i = 0; i < static_cast<int>(materials.size()); ++i) {
     const float x = 3.0f * static_cast<float>(i);
-    scene.objects.push_back(objectOf(boxMesh(Vec3(x, 0, 0), Vec3(x + 1, 1, 1)), i, i));
+    addObject(scene, boxMesh(Vec3(x, 0, 0), Vec3(x + 1, 1, 1)), i, i);
   }
   completeScene(scene, {});
   return scene;
@@ -72,8 +72,8 @@ TEST(Plan, LightmapGrowsWithSurfaceAndIsCapped) {
     Mesh all;
     for (int i = 0; i < copies; ++i)
       all = joined(std::move(all), boxMesh(Vec3(0), Vec3(1, 1 + 1e-3f * static_cast<float>(i), 1)));
-    scene.objects.push_back(objectOf(all, 0, 0));
-    scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(0.1f)), 1, 1));
+    addObject(scene, all, 0, 0);
+    addObject(scene, boxMesh(Vec3(0), Vec3(0.1f)), 1, 1);
     completeScene(scene, {});
     return makePlan(scene);
   };

@@ -85,10 +85,10 @@ TEST(Clusters, TransmittingSolidsPartFromSheets) {
 
 TEST(CompleteScene, IdsFollowNodePrimitiveCluster) {
   Scene scene = twoMaterials();
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(1)), 2, 7));
-  scene.objects.push_back(objectOf(
-      joined(boxMesh(Vec3(9, 0, 0), Vec3(10, 1, 1)), boxMesh(Vec3(3, 0, 0), Vec3(4, 1, 1))), 1, 2, 1));
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0, 5, 0), Vec3(1, 6, 1)), 0, 2, 0));
+  addObject(scene, boxMesh(Vec3(0), Vec3(1)), 2, 7);
+  addObject(scene, joined(boxMesh(Vec3(9, 0, 0), Vec3(10, 1, 1)), boxMesh(Vec3(3, 0, 0), Vec3(4, 1, 1))), 1,
+            2, 1);
+  addObject(scene, boxMesh(Vec3(0, 5, 0), Vec3(1, 6, 1)), 0, 2, 0);
   completeScene(scene, {});
   ASSERT_EQ(scene.objects.size(), 5u);  // and the default light
   EXPECT_EQ(scene.idCount(), 3u);
@@ -114,7 +114,7 @@ TEST(CompleteScene, ThresholdDecidesWhoGetsAnId) {
   plastic.metallic = 0;
   plastic.roughness = 0.5f;
   scene.materials.push_back(plastic);
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(1)), 4, 0));
+  addObject(scene, boxMesh(Vec3(0), Vec3(1)), 4, 0);
   Scene strict = scene;
   completeScene(scene, {});
   EXPECT_EQ(scene.idCount(), 0u);
@@ -132,7 +132,7 @@ TEST(CompleteScene, DropsWhatCannotBeDrawnAndCounts) {
   m.indices.insert(m.indices.end(), {0, 1, 99});  // out of range
   m.indices.insert(m.indices.end(), {0, 0, 1});   // no area
   m.uv0.resize(3);
-  scene.objects.push_back(objectOf(m, 3, 0));
+  addObject(scene, m, 3, 0);
   completeScene(scene, {});
   EXPECT_EQ(scene.triangleCount(), 12u);
   EXPECT_TRUE(warned(scene, "3 triangles were dropped"));
@@ -148,20 +148,20 @@ TEST(CompleteScene, NothingLeftIsAnError) {
 TEST(CompleteScene, SmallAndNeedleTrianglesSurvive) {
   Scene scene = twoMaterials();
   Mesh m = boxMesh(Vec3(0), Vec3(1e-12f));
-  scene.objects.push_back(objectOf(m, 3, 0));
+  addObject(scene, m, 3, 0);
   Mesh needle;
   needle.positions = {Vec3(0), Vec3(1000, 0, 0), Vec3(500, 1e-5f, 0)};
   needle.indices = {0, 1, 2};
-  scene.objects.push_back(objectOf(needle, 3, 1));
+  addObject(scene, needle, 3, 1);
   completeScene(scene, {});
   EXPECT_EQ(scene.triangleCount(), 13u);
 }
 
 TEST(CompleteScene, FlatNormalsAreTheFaces) {
   Scene scene = twoMaterials();
-  scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(2, 3, 4)), 3, 0));
+  addObject(scene, boxMesh(Vec3(0), Vec3(2, 3, 4)), 3, 0);
   completeScene(scene, {});
-  const Mesh& m = scene.objects[0].mesh;
+  const Mesh& m = scene.meshes[0];
   ASSERT_EQ(m.normals.size(), m.positions.size());
   ASSERT_EQ(m.positions.size(), 36u);
   const Vec3 center(1, 1.5f, 2);
@@ -212,7 +212,7 @@ TEST(MeshRepair, UnusableNormalsAreRebuilt) {
 
 TEST(CompleteScene, DefaultLightInARoomHangsBelowTheCeiling) {
   Scene scene = twoMaterials();
-  scene.objects.push_back(objectOf(turnedInsideOut(boxMesh(Vec3(-3, 0, -4), Vec3(3, 2.5f, 4))), 0, 0));
+  addObject(scene, turnedInsideOut(boxMesh(Vec3(-3, 0, -4), Vec3(3, 2.5f, 4))), 0, 0);
   completeScene(scene, {});
   ASSERT_TRUE(scene.defaultLight);
   ASSERT_EQ(scene.objects.size(), 2u);
@@ -222,9 +222,9 @@ TEST(CompleteScene, DefaultLightInARoomHangsBelowTheCeiling) {
   EXPECT_NEAR(panel.bounds.center().y, 0.95f * 2.5f, 1e-5f);
   EXPECT_NEAR(panel.bounds.extent().x, 1, 1e-6f);
   EXPECT_NEAR(panel.bounds.extent().z, 1, 1e-6f);
-  for (const Vec3& n : panel.mesh.normals) EXPECT_EQ(n, Vec3(0, -1, 0));
-  const auto& p = panel.mesh.positions;
-  const auto& i = panel.mesh.indices;
+  for (const Vec3& n : scene.meshOf(panel).normals) EXPECT_EQ(n, Vec3(0, -1, 0));
+  const auto& p = scene.meshOf(panel).positions;
+  const auto& i = scene.meshOf(panel).indices;
   EXPECT_LT(glm::cross(p[i[1]] - p[i[0]], p[i[2]] - p[i[0]]).y, 0);
 }
 
@@ -234,7 +234,7 @@ TEST(CompleteScene, NoDefaultLightWhereThereIsOneOrNoneIsNeeded) {
     Material unlit;
     unlit.unlit = true;
     scene.materials.push_back(unlit);
-    scene.objects.push_back(objectOf(boxMesh(Vec3(0), Vec3(1)), material, 0));
+    addObject(scene, boxMesh(Vec3(0), Vec3(1)), material, 0);
     if (point) scene.lights.emplace_back();
     completeScene(scene, {});
     return scene.defaultLight;
@@ -248,7 +248,7 @@ TEST(CompleteScene, NoDefaultLightWhereThereIsOneOrNoneIsNeeded) {
 TEST(CompleteScene, DefaultCameraStandsInsideAClosedRoom) {
   Scene scene = twoMaterials();
   const Mesh room = turnedInsideOut(boxMesh(Vec3(-3, 0, -4), Vec3(3, 2.5f, 4)));
-  scene.objects.push_back(objectOf(room, 0, 0));
+  addObject(scene, room, 0, 0);
   completeScene(scene, {});
   ASSERT_TRUE(scene.defaultCamera);
   const Camera& c = scene.cameras[0];
@@ -267,7 +267,7 @@ TEST(CompleteScene, DefaultCameraStandsBeforeTheOpenSide) {
     for (int k = 0; k < 3; ++k) front = front && box.positions[box.indices[3 * t + k]].z > 0;
     if (!front) kept.push_back(t);
   }
-  scene.objects.push_back(objectOf(subMesh(box, kept), 0, 0));
+  addObject(scene, subMesh(box, kept), 0, 0);
   completeScene(scene, {});
   const Camera& c = scene.cameras[0];
   EXPECT_GT(c.eye.z, 1.5f);
@@ -283,10 +283,10 @@ TEST(CompleteScene, DefaultCameraStandsBeforeTheOpenSide) {
 
 TEST(CompleteScene, DefaultCameraFramesAThingFromOutside) {
   Scene scene = twoMaterials();
-  scene.objects.push_back(objectOf(boxMesh(Vec3(-2, 0, -2), Vec3(2, 3, 2)), 0, 0));
+  addObject(scene, boxMesh(Vec3(-2, 0, -2), Vec3(2, 3, 2)), 0, 0);
   completeScene(scene, {});
   const View view(scene.cameras[0], 100, 100, scene.bounds);
-  for (const Vec3& p : scene.objects[0].mesh.positions) {
+  for (const Vec3& p : scene.meshes[0].positions) {
     const auto at = view.project(p);
     ASSERT_TRUE(at);
     EXPECT_TRUE(at->pixel.x > 0 && at->pixel.x < 100 && at->pixel.y > 0 && at->pixel.y < 100);
@@ -307,7 +307,7 @@ TEST(AddLight, ReadsEveryKind) {
   EXPECT_EQ(scene.lights[2].intensity, Vec3(2, 3, 4));
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_EQ(scene.materials[scene.objects[0].material].emission, Vec3(5, 6, 7));
-  EXPECT_EQ(scene.objects[0].mesh.normals[0], Vec3(0, -1, 0));
+  EXPECT_EQ(scene.meshes[0].normals[0], Vec3(0, -1, 0));
 }
 
 TEST(AddLight, RefusesWithAnExample) {

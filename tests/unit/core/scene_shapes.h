@@ -57,14 +57,14 @@ inline core::Material lamp() {
   return m;
 }
 
-inline core::Object objectOf(core::Mesh mesh, int material, int node, int primitive = 0) {
+inline core::Object& addObject(core::Scene& scene, core::Mesh mesh, int material, int node,
+                               int primitive = 0) {
   core::Object o;
   o.name = "object " + std::to_string(node);
-  o.mesh = std::move(mesh);
   o.material = material;
   o.node = node;
   o.primitive = primitive;
-  return o;
+  return scene.add(std::move(o), std::move(mesh));
 }
 
 }  // namespace saccade::tests

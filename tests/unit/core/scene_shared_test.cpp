@@ -26,13 +26,14 @@ void expectWhole(const Scene& scene) {
   EXPECT_EQ(scene.hierarchy.size(), 2 * scene.objects.size() - 1);
   std::uint32_t ids = 0;
   for (const Object& o : scene.objects) {
-    const std::size_t n = o.mesh.positions.size();
-    EXPECT_EQ(o.mesh.normals.size(), n);
-    EXPECT_TRUE(o.mesh.tangents.empty() || o.mesh.tangents.size() == n);
-    EXPECT_EQ(materialOf(scene, o).normalTexture ? n : 0, o.mesh.tangents.size());
+    const Mesh& mesh = scene.meshOf(o);
+    const std::size_t n = mesh.positions.size();
+    EXPECT_EQ(mesh.normals.size(), n);
+    EXPECT_TRUE(mesh.tangents.empty() || mesh.tangents.size() == n);
+    EXPECT_EQ(materialOf(scene, o).normalTexture ? n : 0, mesh.tangents.size());
     EXPECT_TRUE(
-        std::all_of(o.mesh.indices.begin(), o.mesh.indices.end(), [&](std::uint32_t i) { return i < n; }));
-    EXPECT_TRUE(std::all_of(o.mesh.normals.begin(), o.mesh.normals.end(),
+        std::all_of(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i < n; }));
+    EXPECT_TRUE(std::all_of(mesh.normals.begin(), mesh.normals.end(),
                             [](const Vec3& v) { return std::abs(glm::length(v) - 1) < 1e-4f; }));
     if (o.id != 0) {
       EXPECT_EQ(o.id, ++ids);
@@ -72,8 +73,8 @@ TEST(SharedScenes, CornellBoxes) {
     EXPECT_EQ(scene.triangleCount(), triangles);
     EXPECT_FALSE(scene.defaultLight);
     ASSERT_TRUE(named(scene, "light"));
-    EXPECT_LT(named(scene, "light")->mesh.normals[0].y, -0.99f);  // its front faces the room
-    EXPECT_GT(scene.cameras[0].eye.z, 1.5f);                      // before the open side
+    EXPECT_LT(scene.meshOf(*named(scene, "light")).normals[0].y, -0.99f);  // its front faces the room
+    EXPECT_GT(scene.cameras[0].eye.z, 1.5f);                               // before the open side
   }
 }
 

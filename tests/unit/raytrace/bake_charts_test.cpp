@@ -15,20 +15,17 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-core::Object objectOf(core::Mesh mesh) {
-  core::Object object;
-  object.name = "mesh";
-  mesh.normals.assign(mesh.positions.size(), Vec3(0, 1, 0));
-  object.mesh = std::move(mesh);
-  return object;
-}
-
 core::Scene sceneOf(std::vector<core::Mesh> meshes) {
   core::Scene scene;
   core::Material white;
   white.metallic = 0;
   scene.materials.push_back(white);
-  for (core::Mesh& m : meshes) scene.objects.push_back(objectOf(std::move(m)));
+  for (core::Mesh& m : meshes) {
+    core::Object object;
+    object.name = "mesh";
+    m.normals.assign(m.positions.size(), Vec3(0, 1, 0));
+    scene.add(std::move(object), std::move(m));
+  }
   return scene;
 }
 
@@ -102,7 +99,7 @@ void checkCharts(const core::Scene& scene, const ChartAtlas& atlas) {
   ASSERT_EQ(atlas.charts.size(), scene.objects.size());
   std::map<int, double> filled;  // texel -> covered share
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    const core::Mesh& mesh = scene.objects[o].mesh;
+    const core::Mesh& mesh = scene.meshOf(scene.objects[o]);
     const core::ObjectCharts& charts = atlas.charts[o];
     ASSERT_EQ(charts.indices.size(), mesh.indices.size());
     ASSERT_EQ(charts.uv.size(), charts.sourceVertex.size());
@@ -145,8 +142,8 @@ TEST(BakeCharts, CurvedSurfacesGetFewChartsAndFlatOnesKeepTheirShape) {
       sceneOf({gridMesh(40, 30, [](float s, float t) { return Vec3(8 * s, 5 * t, 0); })});
   const ChartAtlas wallAtlas = makeCharts(wall, planOf(256), 256);
   EXPECT_EQ(wallAtlas.chartCount, 1u);
-  for (std::size_t t = 0; t < wall.objects[0].mesh.triangleCount(); ++t) {
-    const Area a = areaOf(wall.objects[0].mesh, wallAtlas.charts[0], t, wallAtlas.size);
+  for (std::size_t t = 0; t < wall.meshes[0].triangleCount(); ++t) {
+    const Area a = areaOf(wall.meshes[0], wallAtlas.charts[0], t, wallAtlas.size);
     EXPECT_NEAR(a.atlas * wallAtlas.texelMetres * wallAtlas.texelMetres / a.world, 1, 0.02);
   }
 }
@@ -154,8 +151,8 @@ TEST(BakeCharts, CurvedSurfacesGetFewChartsAndFlatOnesKeepTheirShape) {
 TEST(BakeCharts, AreasShrinkByAtMostTheConeAndTheRoundingToTexels) {
   const core::Scene scene = sceneOf({sphere(48)});
   const ChartAtlas atlas = makeCharts(scene, planOf(512), 512);
-  for (std::size_t t = 0; t < scene.objects[0].mesh.triangleCount(); ++t) {
-    const Area a = areaOf(scene.objects[0].mesh, atlas.charts[0], t, atlas.size);
+  for (std::size_t t = 0; t < scene.meshes[0].triangleCount(); ++t) {
+    const Area a = areaOf(scene.meshes[0], atlas.charts[0], t, atlas.size);
     if (a.world < 1e-7) continue;
     const double ratio = a.atlas * atlas.texelMetres * atlas.texelMetres / a.world;
     EXPECT_GT(ratio, 0.55);
@@ -195,7 +192,7 @@ TEST(BakeCharts, ObjectsThatShowNoIrradianceShareOneTexel) {
   const ChartAtlas atlas = makeCharts(scene, planOf(64), 64);
   EXPECT_EQ(atlas.chartCount, 2u);
   for (const Vec2& uv : atlas.charts[0].uv) EXPECT_EQ(uv, atlas.charts[0].uv[0]);
-  EXPECT_EQ(atlas.charts[0].indices, scene.objects[0].mesh.indices);
+  EXPECT_EQ(atlas.charts[0].indices, scene.meshes[0].indices);
 }
 
 TEST(BakeCharts, DegenerateTrianglesSurvive) {

@@ -118,7 +118,7 @@ TEST(BakeLight, ClosedFurnaceMeanWithinHalfAPercentRmsWithinFive) {
   double sum = 0, squares = 0;
   int n = 0;
   for (int o = 0; o < 6; ++o) {
-    const core::Mesh& mesh = baked.scene().objects[static_cast<std::size_t>(o)].mesh;
+    const core::Mesh& mesh = baked.scene().meshOf(baked.scene().objects[static_cast<std::size_t>(o)]);
     const Vec3 corner = mesh.positions[0], u = mesh.positions[1] - corner, v = mesh.positions[2] - corner - u;
     for (int i = 0; i < 400; ++i) {
       const Vec3 p = corner + u * ((i % 20 + 0.5f) / 20) + v * ((i / 20 + 0.5f) / 20);
@@ -140,7 +140,7 @@ TEST(BakeLight, AThinWallKeepsTheDarkRoomDark) {
   const Baked baked(std::move(b.scene), 128, optionsOf("preview", 100000));
   double lit = 0, dark = 0;
   for (int o = 0; o < 12; ++o) {
-    const core::Mesh& mesh = baked.scene().objects[static_cast<std::size_t>(o)].mesh;
+    const core::Mesh& mesh = baked.scene().meshOf(baked.scene().objects[static_cast<std::size_t>(o)]);
     const Vec3 corner = mesh.positions[0], u = mesh.positions[1] - corner, v = mesh.positions[2] - corner - u;
     for (int i = 0; i < 2500; ++i) {
       const double e = baked.irradiance(o, corner + u * (i % 50 / 49.0f) + v * (i / 50 / 49.0f)).y;
@@ -180,7 +180,7 @@ TEST(BakeLight, ManyChartsUnderEvenLightStayEvenWithinFourPercent) {
   const Baked baked(std::move(b.scene), 256, optionsOf("preview", 500000));
   double reference = 0, middle = 0, border = 0;
   for (const int o : pieces) {
-    const core::Mesh& mesh = baked.scene().objects[static_cast<std::size_t>(o)].mesh;
+    const core::Mesh& mesh = baked.scene().meshOf(baked.scene().objects[static_cast<std::size_t>(o)]);
     const Vec3 c = mesh.positions[0], u = mesh.positions[1] - c,
                v = mesh.positions[2] - mesh.positions[0] - u;
     const Vec3 center = c + 0.5f * (u + v);

@@ -99,9 +99,8 @@ class SceneBuilder {
     object.material = static_cast<int>(scene.materials.size());
     for (const Vec3& p : mesh.positions) object.bounds.add(p);
     scene.bounds.add(object.bounds);
-    object.mesh = std::move(mesh);
     scene.materials.push_back(material);
-    scene.objects.push_back(std::move(object));
+    scene.add(std::move(object), std::move(mesh));
     return static_cast<int>(scene.objects.size()) - 1;
   }
 };
@@ -122,7 +121,7 @@ class Baked {
 
   /// Irradiance of an object at its point nearest to `position`, on its triangles' planes.
   core::Vec3 irradiance(int object, const core::Vec3& position, int layer = 0) const {
-    const core::Mesh& mesh = scene_.objects[static_cast<std::size_t>(object)].mesh;
+    const core::Mesh& mesh = scene_.meshOf(scene_.objects[static_cast<std::size_t>(object)]);
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
       const auto corner = [&](std::size_t c) { return mesh.indices[3 * t + c]; };
       const core::Vec3 a = mesh.positions[corner(0)], e = mesh.positions[corner(1)] - a,

@@ -54,6 +54,7 @@ class SceneMaker {
   core::Object& mesh(int materialIndex, std::uint32_t id, const std::vector<Vec3>& positions,
                      const std::vector<std::uint32_t>& indices, bool closed = false) {
     core::Object o;
+    core::Mesh m;
     o.name = "object " + std::to_string(scene.objects.size());
     o.material = materialIndex;
     o.id = id;
@@ -63,17 +64,16 @@ class SceneMaker {
       const Vec3 cross = glm::cross(b - a, c - a);
       const Vec3 n = glm::length(cross) > 0 ? glm::normalize(cross) : Vec3(0, 1, 0);
       for (const Vec3& p : {a, b, c}) {
-        o.mesh.indices.push_back(static_cast<std::uint32_t>(o.mesh.positions.size()));
-        o.mesh.positions.push_back(p);
-        o.mesh.normals.push_back(n);
-        o.mesh.uv0.emplace_back(p.x, p.z);
-        o.mesh.lightmapUv.emplace_back(0.5f, 0.5f);
+        m.indices.push_back(static_cast<std::uint32_t>(m.positions.size()));
+        m.positions.push_back(p);
+        m.normals.push_back(n);
+        m.uv0.emplace_back(p.x, p.z);
+        m.lightmapUv.emplace_back(0.5f, 0.5f);
         o.bounds.add(p);
       }
     }
     scene.bounds.add(o.bounds);
-    scene.objects.push_back(std::move(o));
-    return scene.objects.back();
+    return scene.add(std::move(o), std::move(m));
   }
   /// Corner, two edges; the front is where cross(e1, e2) points.
   core::Object& quad(int materialIndex, std::uint32_t id, const Vec3& corner, const Vec3& e1,
@@ -114,8 +114,9 @@ class SceneMaker {
       }
     }
     core::Object& o = mesh(materialIndex, id, p, indices, true);
-    for (std::size_t i = 0; i < o.mesh.positions.size(); ++i) {
-      o.mesh.normals[i] = glm::normalize(o.mesh.positions[i] - center);
+    core::Mesh& m = scene.meshOf(o);
+    for (std::size_t i = 0; i < m.positions.size(); ++i) {
+      m.normals[i] = glm::normalize(m.positions[i] - center);
     }
     return o;
   }

@@ -99,7 +99,7 @@ TEST_P(BaseLayer, TextureIsDecodedFromSrgb) {
 
 TEST_P(BaseLayer, VertexColourMultiplies) {
   Scene scene = oneQuad(lambert(Vec3(1)));
-  scene.objects[0].mesh.colors.assign(4, {0.5f, 0.25f, 1, 1});
+  scene.meshes[0].colors.assign(4, {0.5f, 0.25f, 1, 1});
   expectRadiance(center(scene), core::baseDiffuseFactor(scene, scene.materials[0]) * Vec3(0.5f, 0.25f, 1));
 }
 

@@ -14,13 +14,17 @@
 
 namespace saccade::tests {
 
-/// A rectangle corner + s * a + t * b, facing along cross(a, b); UVs (s, t) in all sets.
-inline core::Object makeQuad(core::Vec3 corner, core::Vec3 a, core::Vec3 b, int material = 0,
-                             std::uint32_t id = 0) {
+struct Thing {
   core::Object object;
+  core::Mesh mesh;
+};
+
+/// A rectangle corner + s * a + t * b, facing along cross(a, b); UVs (s, t) in all sets.
+inline Thing makeQuad(core::Vec3 corner, core::Vec3 a, core::Vec3 b, int material = 0, std::uint32_t id = 0) {
+  Thing quad;
+  auto& [object, mesh] = quad;
   object.material = material;
   object.id = id;
-  core::Mesh& mesh = object.mesh;
   for (const core::Vec2 uv : {core::Vec2(0, 0), core::Vec2(1, 0), core::Vec2(1, 1), core::Vec2(0, 1)}) {
     mesh.positions.push_back(corner + uv.x * a + uv.y * b);
     mesh.normals.push_back(glm::normalize(glm::cross(a, b)));
@@ -30,18 +34,18 @@ inline core::Object makeQuad(core::Vec3 corner, core::Vec3 a, core::Vec3 b, int 
     object.bounds.add(mesh.positions.back());
   }
   mesh.indices = {0, 1, 2, 0, 2, 3};
-  return object;
+  return quad;
 }
 
-inline core::Object makeBox(core::Vec3 lo, core::Vec3 hi, int material = 0, std::uint32_t id = 0) {
-  core::Object box;
-  box.material = material;
-  box.id = id;
-  box.closed = true;
+inline Thing makeBox(core::Vec3 lo, core::Vec3 hi, int material = 0, std::uint32_t id = 0) {
+  Thing box;
+  box.object.material = material;
+  box.object.id = id;
+  box.object.closed = true;
   const core::Vec3 e = hi - lo;
   const core::Vec3 x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
-  for (const core::Object& side : {makeQuad(lo, y, x), makeQuad(lo + z, x, y), makeQuad(lo, x, z),
-                                   makeQuad(lo + y, z, x), makeQuad(lo, z, y), makeQuad(lo + x, y, z)}) {
+  for (const Thing& side : {makeQuad(lo, y, x), makeQuad(lo + z, x, y), makeQuad(lo, x, z),
+                            makeQuad(lo + y, z, x), makeQuad(lo, z, y), makeQuad(lo + x, y, z)}) {
     const auto base = static_cast<std::uint32_t>(box.mesh.positions.size());
     const core::Mesh& m = side.mesh;
     box.mesh.positions.insert(box.mesh.positions.end(), m.positions.begin(), m.positions.end());
@@ -50,14 +54,14 @@ inline core::Object makeBox(core::Vec3 lo, core::Vec3 hi, int material = 0, std:
     box.mesh.uv1.insert(box.mesh.uv1.end(), m.uv1.begin(), m.uv1.end());
     box.mesh.lightmapUv.insert(box.mesh.lightmapUv.end(), m.lightmapUv.begin(), m.lightmapUv.end());
     for (std::uint32_t index : m.indices) box.mesh.indices.push_back(base + index);
-    box.bounds.add(side.bounds);
+    box.object.bounds.add(side.object.bounds);
   }
   return box;
 }
 
-inline void addObject(core::Scene& scene, core::Object object) {
-  scene.bounds.add(object.bounds);
-  scene.objects.push_back(std::move(object));
+inline void addObject(core::Scene& scene, Thing thing) {
+  scene.bounds.add(thing.object.bounds);
+  scene.add(std::move(thing.object), std::move(thing.mesh));
 }
 
 inline core::Material lambert(core::Vec3 color) {
