@@ -6,6 +6,7 @@
 
 #include "core/scene/confined_file.h"
 #include "core/scene/gltf_rules.h"
+#include "core/scene/gltf_schema.h"
 
 namespace saccade::core {
 namespace {
@@ -13,10 +14,21 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::array kSupportedExtensions = {"KHR_materials_transmission", "KHR_materials_ior",
-                                             "KHR_materials_specular",     "KHR_materials_emissive_strength",
-                                             "KHR_materials_unlit",        "KHR_lights_punctual",
-                                             "KHR_mesh_quantization"};
+constexpr std::array kSupportedExtensions = {"KHR_lights_punctual",
+                                             "KHR_materials_anisotropy",
+                                             "KHR_materials_clearcoat",
+                                             "KHR_materials_dispersion",
+                                             "KHR_materials_emissive_strength",
+                                             "KHR_materials_ior",
+                                             "KHR_materials_iridescence",
+                                             "KHR_materials_pbrSpecularGlossiness",
+                                             "KHR_materials_sheen",
+                                             "KHR_materials_specular",
+                                             "KHR_materials_transmission",
+                                             "KHR_materials_unlit",
+                                             "KHR_materials_volume",
+                                             "KHR_mesh_quantization",
+                                             "KHR_texture_transform"};
 
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
@@ -164,8 +176,9 @@ Bytes imageBytes(const Element& root, const Element& image, const std::vector<By
 /// Copies of the checked parts only, so that nothing unchecked reaches tinygltf.
 std::string checkedJson(const Json& json, std::size_t bufferCount) {
   Json out = Json::object();
-  for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews",
-                          "buffers", "materials", "textures", "samplers", "cameras", "extensions"})
+  for (const char* key :
+       {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials",
+        "textures", "samplers", "cameras", "animations", "extensions"})
     if (json.contains(key)) out[key] = json[key];
   for (std::size_t i = 0; i < bufferCount; ++i)
     out["buffers"][i]["uri"] = std::string("buffer") + std::to_string(i);
@@ -174,7 +187,9 @@ std::string checkedJson(const Json& json, std::size_t bufferCount) {
       for (const char* key : keys) element.erase(key);
   };
   for (auto& [key, value] : out.items()) {
-    if (value.is_array()) strip(value, {"extras", "skin", "weights"});
+    if (!value.is_array()) continue;
+    strip(value, {"skin", "weights"});
+    if (key != "materials") strip(value, {"extras"});  // Ward's lobe stands in a material's extras
   }
   if (!out.contains("meshes")) return out.dump();
   for (Json& mesh : out["meshes"]) strip(mesh["primitives"], {"extras", "targets", "extensions"});
@@ -183,8 +198,7 @@ std::string checkedJson(const Json& json, std::size_t bufferCount) {
 
 void warnOfWhatIsLeftOut(const Json& json, Warnings& warnings) {
   for (const auto& [key, what] :
-       {std::pair{"animations", "animations are not played; the scene is as its nodes stand"},
-        std::pair{"skins", "skins are ignored; skinned meshes stand in their bind pose"}})
+       {std::pair{"skins", "skins are ignored; skinned meshes stand in their bind pose"}})
     if (json.contains(key) && json[key].is_array() && !json[key].empty()) warnings.emplace_back(what);
   for (const Json& mesh : json.value("meshes", Json::array()))
     for (const Json& primitive : mesh.value("primitives", Json::array()))
@@ -201,16 +215,21 @@ GatedGltf readGatedGltf(const fs::path& file) {
   const Bytes bytes = readSceneFile(file);
   if (bytes.empty()) throw Error(who + ": the file is empty");
   const Parts parts = split(bytes, who);
-  const Json json = parseJson(parts.json, who);
+  Json json = parseJson(parts.json, who);
   const Element root(json, who);
   GatedGltf out;
+  Repairs repairs;
+  checkVersion(root);
+  checkSchema(json, who, repairs);
   checkAsset(root, kSupportedExtensions, out.warnings);
   const fs::path folder = file.parent_path();
   out.buffers = readBuffers(root, parts, folder);
-  checkAccessors(root, out.buffers);
+  const std::vector<GltfAccessor> accessors = checkAccessors(root, out.buffers);
   checkReferences(root);
+  checkAnimations(json, who, accessors, repairs);
   for (const Element& image : root.array("images"))
     out.images.push_back({image.path(), imageBytes(root, image, out.buffers, folder)});
+  repairs.report(out.warnings);
   warnOfWhatIsLeftOut(json, out.warnings);
   out.json = checkedJson(json, out.buffers.size());
   return out;

@@ -19,7 +19,7 @@ struct EncodedImage {
 };
 
 struct GatedGltf {
-  /// Checked glTF 2.0 JSON without images, animations, skins, morph targets and extras; buffer i has the URI
+  /// Checked glTF 2.0 JSON without images, skins, morph targets and extras (but for materials'); buffer i has the URI
   /// "buffer<i>".
   std::string json;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< exactly byteLength long

@@ -6,19 +6,16 @@
 #include "core/scene/gltf_gate.h"
 
 namespace saccade::core {
-namespace {
 
-std::size_t countOf(const Element& root, const char* key) { return root.array(key).size(); }
-
-}  // namespace
-
-void checkAsset(const Element& root, std::span<const char* const> supported, Warnings& warnings) {
+void checkVersion(const Element& root) {
   const Element asset = root.member("asset");
   const std::string version = asset.text("version");
   if (!version.starts_with("2.")) asset.refuse("version is '" + version + "'; only glTF 2.x is read");
   if (asset.has("minVersion") && asset.text("minVersion") != "2.0")
     asset.refuse("needs at least version " + asset.text("minVersion") + "; 2.0 is supported");
+}
 
+void checkAsset(const Element& root, std::span<const char* const> supported, Warnings& warnings) {
   const auto known = [&](const std::string& name) {
     return std::any_of(supported.begin(), supported.end(), [&](const char* s) { return name == s; });
   };
@@ -66,57 +63,54 @@ void checkRange(const Element& who, const ViewSpan& view, std::uint64_t offset, 
     who.refuse("reaches beyond its bufferView of " + std::to_string(view.length) + " bytes");
 }
 
-std::uint64_t readUnsigned(const std::uint8_t* at, std::uint64_t bytes) {
-  std::uint64_t value = 0;
-  std::memcpy(&value, at, bytes);
-  return value;
-}
-
-void checkSparse(const Element& accessor, std::uint64_t count, std::uint64_t elementBytes,
-                 const std::vector<ViewSpan>& views) {
+GltfAccessor::Sparse checkSparse(const Element& accessor, std::uint64_t count, std::uint64_t elementBytes,
+                                 const std::vector<ViewSpan>& views) {
   const Element sparse = accessor.member("sparse");
   const std::uint64_t n = sparse.integer("count", 1, count);
   const Element indices = sparse.member("indices"), values = sparse.member("values");
   const ViewSpan& indexView = views[indices.index("bufferView", views.size(), "bufferViews")];
   const ViewSpan& valueView = views[values.index("bufferView", views.size(), "bufferViews")];
-  const std::uint64_t type = indices.integer("componentType", 5121, 5125);
-  const std::uint64_t bytes = gltfComponentBytes(type);
-  if (type == 5122 || bytes == 0) indices.refuse("componentType must be an unsigned integer type");
+  const std::uint64_t bytes = gltfComponentBytes(indices.integer("componentType", 5121, 5125));
   const std::uint64_t offset = indices.integerOr("byteOffset", 0, 0, indexView.length);
+  const std::uint64_t valueOffset = values.integerOr("byteOffset", 0, 0, valueView.length);
   checkRange(indices, indexView, offset, n, bytes, bytes);
-  checkRange(values, valueView, values.integerOr("byteOffset", 0, 0, valueView.length), n, elementBytes,
-             elementBytes);
+  checkRange(values, valueView, valueOffset, n, elementBytes, elementBytes);
   std::uint64_t before = 0;
   for (std::uint64_t i = 0; i < n; ++i) {
-    const std::uint64_t index = readUnsigned(indexView.data + offset + i * bytes, bytes);
+    const std::uint64_t index = unsignedFrom(indexView.data + offset + i * bytes, bytes);
     if (index >= count)
       indices.refuse("names element " + std::to_string(index) + " of " + std::to_string(count));
     if (i > 0 && index <= before) indices.refuse("must increase strictly");
     before = index;
   }
+  return {n, bytes, indexView.data + offset, valueView.data + valueOffset};
 }
 
 }  // namespace
 
-void checkAccessors(const Element& root, const std::vector<std::vector<std::uint8_t>>& buffers) {
+std::vector<GltfAccessor> checkAccessors(const Element& root,
+                                         const std::vector<std::vector<std::uint8_t>>& buffers) {
   std::vector<ViewSpan> views;
   for (const Element& view : root.array("bufferViews")) views.push_back(checkView(view, buffers));
+  std::vector<GltfAccessor> out;
   for (const Element& accessor : root.array("accessors")) {
-    const std::uint64_t component = gltfComponentBytes(accessor.integer("componentType", 5120, 5126));
-    const std::uint64_t components = gltfComponents(accessor.text("type"));
-    if (component == 0) accessor.refuse("componentType is not one of glTF's");
-    if (components == 0) accessor.refuse("type '" + accessor.text("type") + "' is not one of glTF's");
-    const std::uint64_t count = accessor.integer("count", 1, kMaxAccessorElements);
-    if (accessor.has("normalized") && !accessor.json()["normalized"].is_boolean())
-      accessor.refuse("'normalized' must be true or false");
-    const std::uint64_t bytes = component * components;
+    GltfAccessor a;
+    a.componentType = accessor.integer("componentType", 5120, 5126);
+    a.components = gltfComponents(accessor.text("type"));
+    a.count = accessor.integer("count", 1, kMaxAccessorElements);
+    a.normalized = accessor.has("normalized") && accessor.json()["normalized"].get<bool>();
+    const std::uint64_t bytes = gltfComponentBytes(a.componentType) * a.components;
     if (accessor.has("bufferView")) {
       const ViewSpan& view = views[accessor.index("bufferView", views.size(), "bufferViews")];
-      checkRange(accessor, view, accessor.integerOr("byteOffset", 0, 0, view.length), count, bytes,
-                 view.stride == 0 ? bytes : view.stride);
+      const std::uint64_t offset = accessor.integerOr("byteOffset", 0, 0, view.length);
+      a.stride = view.stride == 0 ? bytes : view.stride;
+      checkRange(accessor, view, offset, a.count, bytes, a.stride);
+      a.data = view.data + offset;
     }
-    if (accessor.has("sparse")) checkSparse(accessor, count, bytes, views);
+    if (accessor.has("sparse")) a.sparse = checkSparse(accessor, a.count, bytes, views);
+    out.push_back(a);
   }
+  return out;
 }
 
 namespace {
@@ -143,56 +137,16 @@ void checkAttribute(const Element& primitive, const std::string& name, const Jso
   if (count != vertexCount) primitive.refuse("attribute " + name + " has another count than the others");
 }
 
-void checkPrimitive(const Element& primitive, const std::vector<Element>& accessors, std::size_t materials) {
+void checkPrimitive(const Element& primitive, const std::vector<Element>& accessors) {
   const Element attributes = primitive.member("attributes");
   std::uint64_t vertexCount = 0;
   for (const auto& [name, value] : attributes.json().items())
     checkAttribute(primitive, name, value, accessors, vertexCount);
-  primitive.optionalIndex("material", materials, "materials");
-  primitive.integerOr("mode", 4, 0, 6);
   if (!primitive.has("indices")) return;
   const Element& indices = accessors[primitive.index("indices", accessors.size(), "accessors")];
   const std::uint64_t component = indices.integer("componentType", 5120, 5126);
   if (indices.text("type") != "SCALAR" || (component != 5121 && component != 5123 && component != 5125))
     primitive.refuse("indices must be unsigned scalars");
-}
-
-void checkTextureInfo(const Element& owner, const char* key, std::size_t textures) {
-  if (!owner.has(key)) return;
-  const Element info = owner.member(key);
-  info.index("index", textures, "textures");
-  info.integerOr("texCoord", 0, 0, 31);
-  info.optionalNumber("scale");
-}
-
-void checkMaterial(const Element& material, std::size_t textures) {
-  if (material.has("pbrMetallicRoughness")) {
-    const Element pbr = material.member("pbrMetallicRoughness");
-    pbr.optionalNumbers("baseColorFactor", 4);
-    pbr.optionalNumber("metallicFactor");
-    pbr.optionalNumber("roughnessFactor");
-    checkTextureInfo(pbr, "baseColorTexture", textures);
-    checkTextureInfo(pbr, "metallicRoughnessTexture", textures);
-  }
-  material.optionalNumbers("emissiveFactor", 3);
-  material.optionalNumber("alphaCutoff");
-  for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"})
-    checkTextureInfo(material, key, textures);
-  if (material.has("alphaMode")) {
-    const std::string mode = material.text("alphaMode");
-    if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
-      material.refuse("unknown alphaMode '" + mode + "'");
-  }
-  if (!material.has("extensions")) return;
-  const Element all = material.member("extensions");
-  for (const auto& [name, value] : all.json().items()) {
-    const Element extension = all.member(name.c_str());
-    for (const char* number : {"transmissionFactor", "ior", "specularFactor", "emissiveStrength"})
-      extension.optionalNumber(number);
-    extension.optionalNumbers("specularColorFactor", 3);
-    for (const char* key : {"transmissionTexture", "specularTexture", "specularColorTexture"})
-      checkTextureInfo(extension, key, textures);
-  }
 }
 
 void checkLights(const Element& root, std::size_t& lightCount) {
@@ -204,12 +158,6 @@ void checkLights(const Element& root, std::size_t& lightCount) {
     const std::string type = light.text("type");
     if (type != "point" && type != "spot" && type != "directional")
       light.refuse("unknown light type '" + type + "'");
-    light.optionalNumbers("color", 3);
-    light.optionalNumber("intensity");
-    light.optionalNumber("range");
-    if (!light.has("spot")) continue;
-    light.member("spot").optionalNumber("innerConeAngle");
-    light.member("spot").optionalNumber("outerConeAngle");
   }
 }
 
@@ -270,14 +218,7 @@ std::vector<std::ptrdiff_t> checkForest(const std::vector<Element>& nodes) {
 
 void checkNodes(const Element& root, std::size_t lights) {
   const auto nodes = root.array("nodes");
-  const std::size_t meshes = countOf(root, "meshes"), cameras = countOf(root, "cameras");
   for (const Element& node : nodes) {
-    node.optionalIndex("mesh", meshes, "meshes");
-    node.optionalIndex("camera", cameras, "cameras");
-    node.optionalNumbers("matrix", 16);
-    node.optionalNumbers("translation", 3);
-    node.optionalNumbers("rotation", 4);
-    node.optionalNumbers("scale", 3);
     if (!node.has("extensions") || !node.member("extensions").has("KHR_lights_punctual")) continue;
     node.member("extensions").member("KHR_lights_punctual").index("light", lights, "lights");
   }
@@ -293,17 +234,11 @@ void checkNodes(const Element& root, std::size_t lights) {
 
 void checkReferences(const Element& root) {
   const auto accessors = root.array("accessors");
-  const std::size_t materials = countOf(root, "materials"), textures = countOf(root, "textures");
   for (const Element& mesh : root.array("meshes")) {
     const auto primitives = mesh.array("primitives");
     if (primitives.empty()) mesh.refuse("has no primitives");
-    for (const Element& primitive : primitives) checkPrimitive(primitive, accessors, materials);
+    for (const Element& primitive : primitives) checkPrimitive(primitive, accessors);
   }
-  for (const Element& texture : root.array("textures")) {
-    texture.optionalIndex("source", countOf(root, "images"), "images");
-    texture.optionalIndex("sampler", countOf(root, "samplers"), "samplers");
-  }
-  for (const Element& material : root.array("materials")) checkMaterial(material, textures);
   std::size_t lights = 0;
   checkLights(root, lights);
   checkCameras(root);

@@ -1,19 +1,30 @@
-// The structural rules of glTF 2.0 that the gate enforces on parsed JSON.
+// The rules of glTF 2.0 that the gate enforces on JSON whose properties checkSchema found in order.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/scene/gltf_contents.h"
 #include "core/scene/gltf_element.h"
+#include "core/scene/repairs.h"
 
 namespace saccade::core {
 
-/// Version, required extensions (known ones in `supported`); warns of optional ones that are not supported.
+/// 2.x is read. Before checkSchema: an older file fails with its version, not with what changed since.
+void checkVersion(const Element& root);
+/// Required extensions (known ones in `supported`); warns of optional ones that are not supported.
 void checkAsset(const Element& root, std::span<const char* const> supported, Warnings& warnings);
-/// bufferViews and accessors against the buffers' lengths, sparse indices against their content.
-void checkAccessors(const Element& root, const std::vector<std::vector<std::uint8_t>>& buffers);
+/// bufferViews and accessors against the buffers' lengths, sparse indices against their content. The result
+/// points into the buffers.
+std::vector<GltfAccessor> checkAccessors(const Element& root,
+                                         const std::vector<std::vector<std::uint8_t>>& buffers);
 /// meshes, materials, textures, cameras, lights, nodes (ranges, parents, cycles), scenes.
 void checkReferences(const Element& root);
+/// Samplers and channels. Those that this program does not play (morph targets, pointers, nodes with a
+/// matrix) are taken out of `root` and counted; all that stay move a node's translation, rotation or scale
+/// and have finite values at times that increase strictly.
+void checkAnimations(Json& root, const std::string& file, const std::vector<GltfAccessor>& accessors,
+                     Repairs& repairs);
 
 }  // namespace saccade::core
