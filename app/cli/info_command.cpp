@@ -1,5 +1,6 @@
 // saccade info: what a scene holds and what the program makes of it.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -41,6 +42,10 @@ Json describe(const core::Scene& scene, const core::Plan& plan) {
                                {"up", toJson(camera.up)},
                                {"fov", camera.fovYDegrees}});
   }
+  json["animations"] = Json::array();
+  for (const core::Animation& animation : scene.animations)
+    json["animations"].push_back({{"name", animation.name}, {"seconds", animation.lastSeconds}});
+  json["time"] = scene.timeSeconds;
   json["default_camera"] = scene.defaultCamera;
   json["bounds"] = {{"min", toJson(scene.bounds.lo)}, {"max", toJson(scene.bounds.hi)}};
   json["warnings"] = scene.warnings;
@@ -65,6 +70,11 @@ void print(const core::Scene& scene, const core::Plan& plan) {
     std::printf("  camera '%s' at (%.2f, %.2f, %.2f), %.1f degrees\n", c.name.c_str(), c.eye.x, c.eye.y,
                 c.eye.z, c.fovYDegrees);
   }
+  double seconds = 0;
+  for (const core::Animation& a : scene.animations) seconds = std::max(seconds, a.lastSeconds);
+  if (!scene.animations.empty())
+    std::printf("  %zu animations of up to %g s, shown at %g s (--time)\n", scene.animations.size(), seconds,
+                scene.timeSeconds);
   std::printf("  plan:\n");
   for (const core::PlanLine& line : plan.lines) {
     std::printf("    %-22s %-3s  %s\n", line.stage.c_str(), line.on ? "on" : "off", line.reason.c_str());

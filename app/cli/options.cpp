@@ -37,7 +37,9 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       ->group(group);
   command.add_option("--scene", o.load.scene, "glTF scene index (default: the file's own choice)")
       ->group(group);
-  command.add_option("--time", o.load.timeSeconds, "Scene time in seconds")
+  command
+      .add_option("--time", o.load.timeSeconds, "Time in seconds at which the file's animations are shown")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(group);
 }

@@ -33,6 +33,8 @@ Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
   if (!std::filesystem::is_regular_file(file, failed)) throw Error(file.string() + ": not a regular file");
   if (!(options.unitScale > 0 && options.unitScale < kInfinity))
     throw UsageError("--unit-scale must be a positive number");
+  if (!(options.timeSeconds >= 0 && options.timeSeconds < static_cast<double>(kInfinity)))
+    throw UsageError("--time must be a number of seconds, 0 or more");
   Scene scene;
   switch (formatOf(file)) {
     case Format::gltf:

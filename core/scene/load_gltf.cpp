@@ -5,6 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/scene/gltf_accessors.h"
+#include "core/scene/gltf_animation.h"
 #include "core/scene/gltf_gate.h"
 #include "core/scene/gltf_materials.h"
 #include "core/scene/loaders.h"
@@ -247,10 +248,11 @@ void convertLights(const tinygltf::Model& model, const std::vector<int>& nodes, 
 
 Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options) {
   GatedGltf gated = readGatedGltf(file);
-  const tinygltf::Model model = parse(gated, file.filename().string());
+  tinygltf::Model model = parse(gated, file.filename().string());
   Scene scene;
   scene.path = file.string();
   scene.warnings = gated.warnings;
+  scene.animations = poseNodes(model, options.timeSeconds, scene.warnings);
   convertMaterials(model, gated.images, scene);
   const std::vector<int> nodes = convertNodes(model, options, scene);
   convertMeshes(model, nodes, scene);

@@ -163,6 +163,12 @@ struct Environment {
   float rotation = 0;  ///< radians, counter-clockwise seen from above
 };
 
+/// Of the file. All play together; the nodes stand as they do at Scene::timeSeconds.
+struct Animation {
+  std::string name;        ///< may be empty
+  double lastSeconds = 0;  ///< time of its last key
+};
+
 /// One node of the object hierarchy: grouped by material, then by nearness. Leaves name one object.
 struct HierarchyNode {
   Bounds bounds;
@@ -182,6 +188,7 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::shared_ptr<const Environment> environment;  ///< null: black
   std::vector<Camera> cameras;
+  std::vector<Animation> animations;
   std::vector<HierarchyNode> hierarchy;  ///< [0] is the root; empty for an empty scene
   Bounds bounds;
   bool defaultLight =
