@@ -39,7 +39,6 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       ->group(group);
   command
       .add_option("--time", o.load.timeSeconds, "Time in seconds at which the file's animations are shown")
-      ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(group);
 }
