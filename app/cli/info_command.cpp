@@ -61,8 +61,9 @@ void print(const core::Scene& scene, const core::Plan& plan) {
   std::printf("  %zu objects (%u non-diffuse), %zu triangles, %zu materials, %zu textures\n",
               scene.objects.size(), scene.idCount(), scene.triangleCount(), scene.materials.size(),
               scene.textures.size());
-  std::printf("  %zu lights%s\n", lightCount(scene),
-              scene.defaultLight ? " (a default panel; the file has none)" : "");
+  std::printf(
+      "  %zu lights%s\n", lightCount(scene),
+      scene.defaultLight ? ", a default panel among them: the file has none that one would see by" : "");
   const core::Bounds& b = scene.bounds;
   std::printf("  bounds (%.2f, %.2f, %.2f) to (%.2f, %.2f, %.2f) m\n", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y,
               b.hi.z);

@@ -87,15 +87,11 @@ void assignIds(Scene& scene, float threshold) {
   }
 }
 
-bool needsDefaultLight(const Scene& scene) {
-  if (!scene.lights.empty() || scene.objects.empty()) return false;
-  bool allUnlit = true;
-  for (const Object& o : scene.objects) {
-    const Material& m = materialOf(scene, o);
-    if (m.emits()) return false;
-    allUnlit = allUnlit && m.unlit;
-  }
-  return !allUnlit;
+/// No light was asked for, and none is certain to do: whether emitters do is for onlyDimEmitters to say.
+bool mayBeDark(const Scene& scene, const LoadOptions& options) {
+  return options.lights.empty() && scene.lights.empty() &&
+         std::any_of(scene.objects.begin(), scene.objects.end(),
+                     [&](const Object& o) { return !materialOf(scene, o).unlit; });
 }
 
 void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool light) {
@@ -107,7 +103,9 @@ void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool lig
   if (light) {
     addDefaultLight(scene, around);
     scene.defaultLight = true;
-    scene.warnings.emplace_back("the scene has no light: a default light panel was added");
+    scene.warnings.emplace_back(
+        "the scene has no light that one would see by: a default light panel was added; --light adds another "
+        "instead");
   }
 }
 
@@ -130,9 +128,12 @@ void completeScene(Scene& scene, const LoadOptions& options) {
   repairAll(scene);
   if (scene.objects.empty()) throw Error(scene.path + ": holds no triangle to show");
   findBounds(scene);
-  const bool noCamera = scene.cameras.empty(), noLight = needsDefaultLight(scene);
-  // Looked at once, before a default light changes the bounds.
-  if (noCamera || noLight) addDefaults(scene, look(scene), noCamera, noLight);
+  const bool noCamera = scene.cameras.empty(), dark = mayBeDark(scene, options);
+  if (noCamera || dark) {
+    // Looked at once, before a default light changes the bounds.
+    const Surroundings around = look(scene);
+    addDefaults(scene, around, noCamera, dark && onlyDimEmitters(scene, around));
+  }
   splitIntoClusters(scene);
   findBounds(scene);
   assignIds(scene, options.nonDiffuseThreshold);

@@ -2,27 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+
+#include "core/scene/texture_mean.h"
 
 namespace saccade::core {
 namespace {
 
 constexpr float kPanelSide = 1, kPanelHeight = 0.95f, kPanelRadiance = 15;
+/// Where the panel of a scene that is no room stands, seen from its middle: above and a little to the left of
+/// the default camera, so that it lights what the camera sees and stays out of the picture.
+const Vec3 kKeyDirection(-0.25f, 1, 0.8f);
+/// Emitters that would light the faces of the bounds by less than this, W/m^2 on average, light nothing one
+/// would see: a lit label, windows painted white. A room keeps its light, around things most of it is lost.
+constexpr double kDimRoom = 0.05, kDimOpen = 0.25;
 constexpr float kFov = 60;
 constexpr float kEyeHeight = 1.6f;
 constexpr float kSmallestRoom = 1.2f;
 /// Rays to each face of the bounds: a grid of this many points a side; a face is open when more than half
 /// miss.
 constexpr int kFaceGrid = 3;
+/// A front nearer to the middle than this share of the way to the face belongs to a thing, not to a wall.
+constexpr float kNearestWall = 0.4f;
 
 struct Hit {
-  float distance;
+  float distance;  ///< in units of the direction's length
   bool front;
 };
 
-/// Every triangle is tried: a few dozen rays once per scene do not pay for a tree.
-std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& direction) {
-  std::optional<Hit> nearest;
+/// visit(Hit) for whatever the ray meets, in no order. Every triangle is tried: a few dozen rays once per
+/// scene do not pay for a tree.
+template <class Visit>
+void forEachHit(const Scene& scene, const Vec3& from, const Vec3& direction, Visit&& visit) {
   for (const Object& o : scene.objects) {
     const auto& p = scene.meshOf(o).positions;
     const auto& index = scene.meshOf(o).indices;
@@ -38,14 +50,33 @@ std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& 
       const float v = glm::dot(direction, q) / determinant;
       if (!(v >= 0 && u + v <= 1)) continue;
       const float t = glm::dot(e2, q) / determinant;
-      if (t > 0 && (!nearest || t < nearest->distance)) nearest = Hit{t, determinant > 0};
+      if (t > 0) visit(Hit{t, determinant > 0});
     }
   }
+}
+
+std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& direction) {
+  std::optional<Hit> nearest;
+  forEachHit(scene, from, direction, [&](const Hit& hit) {
+    if (!nearest || hit.distance < nearest->distance) nearest = hit;
+  });
   return nearest;
 }
 
+double surfaceArea(const Scene& scene, const Object& o) {
+  const Mesh& mesh = scene.meshOf(o);
+  double twice = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    Vec3 p[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = Vec3(o.meshToWorld * Vec4(mesh.positions[mesh.indices[i + k]], 1));
+    twice += glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+  }
+  return 0.5 * twice;
+}
+
 struct FaceView {
-  int hits = 0, fronts = 0;
+  int hits = 0, fronts = 0, walls = 0;
 };
 
 /// Rays from the middle to a grid of points on one face of the bounds.
@@ -60,9 +91,15 @@ FaceView lookAtFace(const Scene& scene, int axis, bool positive) {
       // Off the symmetry planes, where edges like to lie.
       target[u] = glm::mix(box.lo[u], box.hi[u], 0.21f + 0.29f * static_cast<float>(i));
       target[v] = glm::mix(box.lo[v], box.hi[v], 0.22f + 0.285f * static_cast<float>(j));
-      const auto hit = nearestHit(scene, box.center(), target - box.center());
-      seen.hits += hit.has_value();
-      seen.fronts += hit && hit->front;
+      std::optional<Hit> nearest;
+      bool wall = false;
+      forEachHit(scene, box.center(), target - box.center(), [&](const Hit& hit) {
+        if (!nearest || hit.distance < nearest->distance) nearest = hit;
+        wall = wall || (hit.front && hit.distance > kNearestWall);
+      });
+      seen.hits += nearest.has_value();
+      seen.fronts += nearest && nearest->front;
+      seen.walls += wall;
     }
   }
   return seen;
@@ -134,19 +171,19 @@ Surroundings look(const Scene& scene) {
   Surroundings out;
   constexpr int kMost = kFaceGrid * kFaceGrid / 2 + 1;
   const FaceView floor = lookAtFace(scene, 1, false);
-  int closedSides = 0, hits = floor.hits, fronts = floor.fronts;
+  int walls = 0, hits = floor.hits, fronts = floor.fronts;
   for (int side = 0; side < 4; ++side) {
     const FaceView face = lookAtFace(scene, side < 2 ? 0 : 2, side % 2 == 0);
     out.open[side] = face.hits < kMost;
-    closedSides += !out.open[side];
+    walls += face.walls >= kMost;
     hits += face.hits;
     fronts += face.fronts;
   }
-  // A solid thing surrounds its middle too, but shows its backs there; a shelf of samples is no room for a
-  // walker.
+  // A solid thing surrounds its middle too, but shows its backs there; things around the middle show it
+  // no front far away; a shelf of samples is no room for a walker.
   const Vec3 extent = scene.bounds.extent();
   const bool roomy = std::min({extent.x, extent.y, extent.z}) >= kSmallestRoom;
-  out.interior = roomy && floor.hits >= kMost && closedSides >= 3 && 3 * fronts >= 2 * hits;
+  out.interior = roomy && floor.walls >= kMost && walls >= 3 && 3 * fronts >= 2 * hits;
   return out;
 }
 
@@ -179,17 +216,51 @@ void addPanel(Scene& scene, const std::string& name, const Vec3& center, Vec2 si
   scene.add(std::move(object), std::move(mesh));
 }
 
+namespace {
+
+/// Lowest height of what is above the panel's place, at most the top of the bounds.
+float ceilingHeight(const Scene& scene) {
+  const Vec3 middle = scene.bounds.center();
+  float height = scene.bounds.hi.y;
+  for (const Vec2 corner :
+       {Vec2(0), Vec2(-0.5f, -0.5f), Vec2(0.5f, -0.5f), Vec2(0.5f, 0.5f), Vec2(-0.5f, 0.5f)}) {
+    const Vec3 from = middle + kPanelSide * Vec3(corner.x, 0, corner.y);
+    if (const auto hit = nearestHit(scene, from, Vec3(0, 1, 0)))
+      height = std::min(height, from.y + hit->distance);
+  }
+  return height;
+}
+
+}  // namespace
+
+bool onlyDimEmitters(const Scene& scene, const Surroundings& around) {
+  double watts = 0;
+  for (const Object& o : scene.objects) {
+    const Material& m = scene.materials[static_cast<std::size_t>(o.material)];
+    if (!m.emits()) continue;
+    const Vec3 texture =
+        m.emissionTexture
+            ? Vec3(textureMean(scene.textures[static_cast<std::size_t>(m.emissionTexture.texture)]))
+            : Vec3(1);
+    watts += std::numbers::pi * luminance(m.emission * texture) * surfaceArea(scene, o);
+  }
+  const Vec3 e = scene.bounds.extent();
+  const double faces = 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+  return watts < (around.interior ? kDimRoom : kDimOpen) * faces;
+}
+
 void addDefaultLight(Scene& scene, const Surroundings& around) {
   const Bounds& box = scene.bounds;
-  Vec3 center = box.center();
+  Vec3 center = box.center(), direction(0, -1, 0);
   float side = kPanelSide;
   if (around.interior) {
-    center.y = glm::mix(box.lo.y, box.hi.y, kPanelHeight);
+    center.y = glm::mix(box.lo.y, ceilingHeight(scene), kPanelHeight);
   } else {
-    center.y = box.hi.y + 0.75f * box.diagonal();
-    side = std::max(kPanelSide, 0.5f * box.diagonal());
+    direction = -glm::normalize(kKeyDirection);
+    center -= 1.25f * box.diagonal() * direction;
+    side = 0.5f * box.diagonal();
   }
-  addPanel(scene, "default light", center, Vec2(side), Vec3(0, -1, 0), Vec3(kPanelRadiance));
+  addPanel(scene, "default light", center, Vec2(side), direction, Vec3(kPanelRadiance));
 }
 
 Camera defaultCamera(const Scene& scene, const Surroundings& around) {

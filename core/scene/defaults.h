@@ -13,8 +13,13 @@ struct Surroundings {
 /// The scene's bounds must be known and not empty, here and below.
 Surroundings look(const Scene& scene);
 
+/// The scene's emitting objects together would give the faces of its bounds less than 0.05 W/m^2 on average
+/// in a room, 0.25 elsewhere (none included): a lit label, windows painted white. One sees nothing by them.
+bool onlyDimEmitters(const Scene& scene, const Surroundings& around);
+
 /// Adds an object emitting downwards, one metre square at 0.95 of the room's height, radiance 15. Departure:
-/// a scene that is no room gets it above its bounds, as wide as the scene if that is more than two metres.
+/// a scene that is no room gets it above, to the left and before its bounds, half as wide as their diagonal,
+/// so that things of any size are lit alike, on the side that the default camera sees.
 void addDefaultLight(Scene& scene, const Surroundings& around);
 
 /// 60 degrees. In a closed room: at eye height near one end, looking along the longest free way. In a room

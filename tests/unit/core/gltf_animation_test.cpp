@@ -125,7 +125,7 @@ TEST(AnimatedScenes, ANodeStandsWhereItIsAtTheTime) {
   EXPECT_EQ(positions(still)[0], Vec3(0));
   EXPECT_EQ(positions(moved)[0], Vec3(1, 0, 0));
   EXPECT_EQ(positions(ended)[1], Vec3(5, 0, 0));
-  EXPECT_EQ(moved.bounds.lo.x, 1);
+  EXPECT_EQ(moved.objects[0].bounds.lo.x, 1);
   EXPECT_EQ(moved.timeSeconds, 0.5);
   EXPECT_NE(sceneKey(still), sceneKey(moved));
   EXPECT_EQ(sceneKey(ended), sceneKey(loadAt(b, 2)));

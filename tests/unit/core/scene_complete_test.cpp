@@ -228,6 +228,64 @@ TEST(CompleteScene, DefaultLightInARoomHangsBelowTheCeiling) {
   EXPECT_LT(glm::cross(p[i[1]] - p[i[0]], p[i[2]] - p[i[0]]).y, 0);
 }
 
+TEST(CompleteScene, DefaultLightHangsBelowWhatIsAboveTheMiddle) {
+  // A shell around the room, as exporters leave it: the light must not hang between the two.
+  Scene scene = twoMaterials();
+  addObject(scene, turnedInsideOut(boxMesh(Vec3(-3, 0, -4), Vec3(3, 2.5f, 4))), 0, 0);
+  addObject(scene, boxMesh(Vec3(-3.1f, -0.1f, -4.1f), Vec3(3.1f, 3.2f, 4.1f)), 0, 1);
+  completeScene(scene, {});
+  ASSERT_TRUE(scene.defaultLight);
+  const float height = scene.objects.back().bounds.center().y;
+  EXPECT_LT(height, 2.5f);
+  EXPECT_GT(height, 2.25f);
+}
+
+TEST(CompleteScene, DefaultLightOfAThingScalesWithItAndLightsTheSideOneSees) {
+  const auto panelOf = [](float size) {
+    Scene scene = twoMaterials();
+    addObject(scene, boxMesh(Vec3(-size), Vec3(size)), 0, 0);
+    completeScene(scene, {});
+    EXPECT_TRUE(scene.defaultLight);
+    const Vec3 center = scene.objects[1].bounds.center();
+    EXPECT_GT(glm::dot(scene.meshOf(scene.objects[1]).normals[0], -glm::normalize(center)), 1 - 1e-5f);
+    EXPECT_GT(glm::dot(center, scene.cameras[0].eye), 0);
+    const View view(scene.cameras[0], 64, 64, scene.bounds);
+    for (const Vec3& p : scene.meshOf(scene.objects[1]).positions) {
+      const auto at = view.project(p);
+      EXPECT_FALSE(at && at->pixel.x > 0 && at->pixel.x < 64 && at->pixel.y > 0 && at->pixel.y < 64);
+    }
+    return scene.objects[1].bounds;
+  };
+  const Bounds small = panelOf(0.01f), large = panelOf(20);
+  EXPECT_NEAR(glm::length(large.center()) / glm::length(small.center()), 2000, 0.1f);
+  EXPECT_NEAR(large.diagonal() / small.diagonal(), 2000, 0.1f);
+}
+
+TEST(CompleteScene, EmittersTooDimToSeeByGetADefaultLightUnlessTheUserLit) {
+  const auto lit = [](float emission, bool option) {
+    Scene scene = twoMaterials();
+    addObject(scene, boxMesh(Vec3(0), Vec3(2)), 0, 0);
+    addObject(scene, boxMesh(Vec3(3, 0, 0), Vec3(3.1f, 0.1f, 0.1f)), 3, 1);
+    scene.materials[3].emission = Vec3(emission);
+    LoadOptions options;
+    if (option) options.lights = {"panel:at=0,5,0,size=1,1,radiance=0.01"};
+    completeScene(scene, options);
+    return scene.defaultLight;
+  };
+  EXPECT_TRUE(lit(1, false));
+  EXPECT_FALSE(lit(200, false));
+  EXPECT_FALSE(lit(1, true));
+}
+
+TEST(CompleteScene, ThingsBesideEachOtherAreNoRoom) {
+  Scene scene = twoMaterials();
+  addObject(scene, boxMesh(Vec3(-4, -2, -2), Vec3(-0.2f, 2, 2)), 0, 0);
+  addObject(scene, boxMesh(Vec3(0.2f, -2, -2), Vec3(4, 2, 2)), 0, 1);
+  completeScene(scene, {});
+  EXPECT_FALSE(Bounds(scene.objects[0].bounds).contains(scene.cameras[0].eye));
+  EXPECT_GT(glm::length(scene.cameras[0].eye), 4);
+}
+
 TEST(CompleteScene, NoDefaultLightWhereThereIsOneOrNoneIsNeeded) {
   const auto made = [](int material, bool point) {
     Scene scene = twoMaterials();
