@@ -134,19 +134,55 @@ void addVector(ContentHash& hash, const V& v) {
 void addSlot(ContentHash& hash, const TextureSlot& slot) {
   hash.add(slot.texture);
   hash.add(slot.uvSet);
+  addVector(hash, slot.offset);
+  hash.add(slot.rotation);
+  addVector(hash, slot.scale);
+}
+
+void addWard(ContentHash& hash, const std::optional<WardLobe>& ward) {
+  hash.add(ward.has_value());
+  if (!ward) return;
+  addVector(hash, ward->diffuse);
+  addVector(hash, ward->specular);
+  hash.add(ward->alphaX);
+  hash.add(ward->alphaY);
 }
 
 void addMaterial(ContentHash& hash, const Material& m) {
   addVector(hash, m.baseColor);
   addVector(hash, m.emission);
   addVector(hash, m.specularColor);
-  for (const float f :
-       {m.alpha, m.metallic, m.roughness, m.normalScale, m.ior, m.specular, m.transmission, m.alphaCutoff})
+  addVector(hash, m.attenuationColor);
+  addVector(hash, m.sheenColor);
+  for (const float f : {m.alpha,
+                        m.metallic,
+                        m.roughness,
+                        m.normalScale,
+                        m.ior,
+                        m.specular,
+                        m.transmission,
+                        m.alphaCutoff,
+                        m.attenuationDistance,
+                        m.dispersion,
+                        m.clearcoat,
+                        m.clearcoatRoughness,
+                        m.clearcoatNormalScale,
+                        m.anisotropy,
+                        m.anisotropyRotation,
+                        m.sheenRoughness,
+                        m.iridescence,
+                        m.iridescenceIor,
+                        m.iridescenceThicknessMin,
+                        m.iridescenceThicknessMax})
     hash.add(f);
-  for (const TextureSlot& slot :
-       {m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture, m.emissionTexture, m.specularTexture,
-        m.specularColorTexture, m.transmissionTexture})
-    addSlot(hash, slot);
+  for (const TextureSlot* slot :
+       {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissionTexture,
+        &m.specularTexture, &m.specularColorTexture, &m.transmissionTexture, &m.clearcoatTexture,
+        &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture, &m.anisotropyTexture, &m.sheenColorTexture,
+        &m.sheenRoughnessTexture, &m.iridescenceTexture, &m.iridescenceThicknessTexture})
+    addSlot(hash, *slot);
+  addWard(hash, m.ward);
+  hash.add(m.thinWalled);
   hash.add(m.alphaMode);
   hash.add(m.doubleSided);
   hash.add(m.unlit);

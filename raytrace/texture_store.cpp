@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/image_io.h"
+#include "core/scene/texture_transform.h"
 
 namespace saccade::raytrace {
 namespace {
@@ -101,10 +102,13 @@ TextureView TextureStore::view(const core::TextureSlot& slot) const {
   if (!slot) return {};
   TextureView v = views_[slot.texture];
   v.uvSet = static_cast<std::uint8_t>(slot.uvSet);
+  v.transformed = slot.transformed();
+  if (v.transformed) v.uvMatrix = core::uvMatrix(slot);
   return v;
 }
 
-core::Vec4 TextureView::sample(const Vec2& uv) const {
+core::Vec4 TextureView::sample(const Vec2& meshUv) const {
+  const Vec2 uv = transformed ? uvMatrix * Vec3(meshUv, 1) : meshUv;
   const float x = wrapCoordinate(uv.x, wrapS) * static_cast<float>(width);
   const float y = wrapCoordinate(uv.y, wrapT) * static_cast<float>(height);
   const auto fetch = [&](int column, int row) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/mat3x2.hpp>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -18,12 +19,14 @@ struct TextureView {
   int tilesAcross = 0;
   core::Wrap wrapS = core::Wrap::repeat, wrapT = core::Wrap::repeat;
   bool nearest = false;
+  bool transformed = false;
   std::uint8_t uvSet = 0;
+  glm::mat3x2 uvMatrix{1};  ///< read only where `transformed` (core/scene/texture_transform.h)
 
   explicit operator bool() const { return texels != nullptr; }
-  /// Bilinear (or nearest) RGBA, colour decoded to linear. v runs downwards. Beyond +-1e6 and for NaN, uv =
-  /// 0.
-  core::Vec4 sample(const Vec2& uv) const;
+  /// Bilinear (or nearest) RGBA at the mesh's uv, which KHR_texture_transform moves first; colour decoded to
+  /// linear. v runs downwards. Beyond +-1e6 and for NaN, uv = 0.
+  core::Vec4 sample(const Vec2& meshUv) const;
 };
 
 class TextureStore {

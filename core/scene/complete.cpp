@@ -18,10 +18,7 @@ const Material& materialOf(const Scene& scene, const Object& object) {
 
 void repairAll(Scene& scene) {
   RepairCounts counts;
-  for (Object& o : scene.objects) {
-    const Material& m = materialOf(scene, o);
-    repairMesh(scene.meshOf(o), static_cast<bool>(m.normalTexture), m.normalTexture.uvSet, counts);
-  }
+  for (Object& o : scene.objects) repairMesh(scene.meshOf(o), materialOf(scene, o), counts);
   std::erase_if(scene.objects, [&](const Object& o) { return scene.meshOf(o).indices.empty(); });
   const auto warn = [&](std::uint64_t n, const char* what) {
     if (n > 0) scene.warnings.push_back(std::to_string(n) + what);

@@ -253,7 +253,7 @@ Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options) {
   scene.path = file.string();
   scene.warnings = gated.warnings;
   scene.animations = poseNodes(model, options.timeSeconds, scene.warnings);
-  convertMaterials(model, gated.images, scene);
+  convertMaterials(model, gated.images, options.unitScale, scene);
   const std::vector<int> nodes = convertNodes(model, options, scene);
   convertMeshes(model, nodes, scene);
   convertCameras(model, nodes, scene);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "core/scene/texture_transform.h"
+
 namespace saccade::core {
 namespace {
 
@@ -133,6 +135,20 @@ void makeTangents(Mesh& m, const std::vector<Vec2>& uv) {
   }
 }
 
+const TextureSlot& tangentSlot(const Material& m) {
+  for (const TextureSlot* slot : {&m.normalTexture, &m.clearcoatNormalTexture})
+    if (*slot) return *slot;
+  return m.anisotropyTexture;
+}
+
+std::vector<Vec2> tangentUv(const Mesh& mesh, const TextureSlot& slot) {
+  std::vector<Vec2> uv = slot.uvSet == 1 && !mesh.uv1.empty() ? mesh.uv1 : mesh.uv0;
+  if (!slot.transformed()) return uv;
+  const glm::mat3x2 matrix = uvMatrix(slot);
+  for (Vec2& at : uv) at = matrix * Vec3(at, 1);
+  return uv;
+}
+
 void repairTangents(Mesh& m) {
   for (std::size_t i = 0; i < m.tangents.size(); ++i) {
     Vec3 t(m.tangents[i]);
@@ -150,7 +166,7 @@ void zeroNotFinite(std::vector<V>& array) {
 
 }  // namespace
 
-void repairMesh(Mesh& mesh, bool needsTangents, int normalMapUvSet, RepairCounts& counts) {
+void repairMesh(Mesh& mesh, const Material& material, RepairCounts& counts) {
   const std::size_t vertices = mesh.positions.size();
   dropWrongLength(mesh.normals, vertices, counts);
   dropWrongLength(mesh.tangents, vertices, counts);
@@ -167,10 +183,10 @@ void repairMesh(Mesh& mesh, bool needsTangents, int normalMapUvSet, RepairCounts
   } else {
     repairNormals(mesh, counts);
   }
-  if (!needsTangents) {
+  if (!material.needsTangents()) {
     mesh.tangents.clear();
   } else if (mesh.tangents.empty()) {
-    makeTangents(mesh, normalMapUvSet == 1 ? mesh.uv1 : mesh.uv0);
+    makeTangents(mesh, tangentUv(mesh, tangentSlot(material)));
   } else {
     repairTangents(mesh);
   }

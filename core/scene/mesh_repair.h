@@ -13,9 +13,11 @@ struct RepairCounts {
   std::uint64_t normals = 0;     ///< vertices whose normal was not usable
 };
 
-/// Drops what is unusable, fills normals (flat ones where there are none, which splits vertices) and, for
-/// `needsTangents`, tangents. Leaves the mesh within the contract of core::Mesh.
-void repairMesh(Mesh& mesh, bool needsTangents, int normalMapUvSet, RepairCounts& counts);
+/// Drops what is unusable, fills normals (flat ones where there are none, which splits vertices) and, for a
+/// material that needs them, tangents: the file's own, or those of the texture coordinates of the first of
+/// its normal map, clear coat's normal map and anisotropy map, transformed as that texture is (else of the
+/// first UV set). Leaves the mesh within the contract of core::Mesh.
+void repairMesh(Mesh& mesh, const Material& material, RepairCounts& counts);
 
 /// For every position the smallest index of a vertex with the same position (bit for bit, -0 = 0).
 std::vector<std::uint32_t> weldedVertices(const std::vector<Vec3>& positions);

@@ -36,6 +36,7 @@ struct TextureSlot {
   float rotation = 0;  ///< radians
   Vec2 scale{1};
   explicit operator bool() const { return texture >= 0; }
+  bool transformed() const { return offset != Vec2(0) || rotation != 0 || scale != Vec2(1); }
 };
 
 enum class AlphaMode { opaque, mask, blend };
@@ -87,7 +88,9 @@ struct Material {
   float iridescenceIor = 1.3f;
   float iridescenceThicknessMin = 100, iridescenceThicknessMax = 400;  ///< nm; G of its texture mixes
   TextureSlot iridescenceTexture, iridescenceThicknessTexture;
-  std::optional<WardLobe> ward;  ///< replaces all lobes above but emission and alpha
+  /// Replaces all lobes above but emission and alpha. baseColor is its diffuse albedo, which textures and
+  /// vertex colours multiply; metallic, transmission and specular are 0.
+  std::optional<WardLobe> ward;
   AlphaMode alphaMode = AlphaMode::opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
@@ -108,7 +111,7 @@ struct Mesh {
   bool instanced = false;
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;   ///< unit, always filled by the loader (flat ones where the file has none)
-  std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when the material has a normal map
+  std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when Material::needsTangents()
   std::vector<Vec2> uv0, uv1;
   std::vector<Vec4> colors;  ///< COLOR_0, linear
   std::vector<Vec2>

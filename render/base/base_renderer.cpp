@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/scene/texture_transform.h"
 #include "render/base/features.h"
 #include "render/base/frustum.h"
 #include "render/base/geometry.h"
@@ -21,6 +22,7 @@ struct Program {
   GlProgram program;
   GLint viewProjection = -1;
   GLint surface = -1;
+  std::array<GLint, kTextureUses.size()> uvMatrix{};
 };
 
 Program makeProgram(const Gl& gl, Features features) {
@@ -31,11 +33,12 @@ Program makeProgram(const Gl& gl, Features features) {
   p.viewProjection = gl.GetUniformLocation(name, "viewProjection");
   p.surface = gl.GetUniformLocation(name, "surface");
   gl.UseProgram(name);
-  // A sampler that the features leave out has location -1, which GL ignores.
-  const char* samplers[kUnitCount] = {"maps", "baseTexture", "metallicTexture", "transmissionTexture",
-                                      "emissionTexture"};
-  for (int unit = 0; unit < kUnitCount; ++unit)
-    gl.Uniform1i(gl.GetUniformLocation(name, samplers[unit]), unit);
+  // A uniform that the features leave out has location -1, which GL ignores.
+  gl.Uniform1i(gl.GetUniformLocation(name, "maps"), kMapsUnit);
+  for (std::size_t i = 0; i < kTextureUses.size(); ++i) {
+    gl.Uniform1i(gl.GetUniformLocation(name, kTextureUses[i].sampler), kTextureUses[i].unit);
+    p.uvMatrix[i] = gl.GetUniformLocation(name, kTextureUses[i].uvMatrix);
+  }
   return p;
 }
 
@@ -90,19 +93,14 @@ struct BaseRenderer::State {
 
 void BaseRenderer::State::uploadTextures() {
   textures.resize(scene.textures.size());
-  const auto need = [&](bool used, const core::TextureSlot& slot) {
-    if (!used) return;
-    const auto index = static_cast<std::size_t>(slot.texture);
-    if (textures[index].name() == 0) {
-      textures[index] = uploadTexture(gl, scene.textures[index], context.maxSize());
-    }
-  };
   for (const DrawItem& item : geometry.items()) {
     const core::Material& m = scene.materials[scene.objects[item.object].material];
-    need(item.features & kBaseTexture, m.baseColorTexture);
-    need(item.features & kMetallicTexture, m.metallicRoughnessTexture);
-    need(item.features & kTransmissionTexture, m.transmissionTexture);
-    need(item.features & kEmissionTexture, m.emissionTexture);
+    for (const TextureUse& use : kTextureUses) {
+      if (!(item.features & use.texture)) continue;
+      const auto index = static_cast<std::size_t>((m.*use.slot).texture);
+      if (textures[index].name() == 0)
+        textures[index] = uploadTexture(gl, scene.textures[index], context.maxSize());
+    }
   }
   checkGl(gl, "uploading the textures");
 }
@@ -172,10 +170,12 @@ void BaseRenderer::State::useState(const DrawItem& item, const core::View& view)
     gl.BindVertexArray(geometry.vertexArray(item.attributes));
   }
   const core::Material& m = scene.materials[scene.objects[item.object].material];
-  if (features & kBaseTexture) bindTexture(kBaseUnit, m.baseColorTexture);
-  if (features & kMetallicTexture) bindTexture(kMetallicUnit, m.metallicRoughnessTexture);
-  if (features & kTransmissionTexture) bindTexture(kTransmissionUnit, m.transmissionTexture);
-  if (features & kEmissionTexture) bindTexture(kEmissionUnit, m.emissionTexture);
+  for (std::size_t i = 0; i < kTextureUses.size(); ++i) {
+    const TextureUse& use = kTextureUses[i];
+    if (features & use.texture) bindTexture(use.unit, m.*use.slot);
+    if (features & use.transform)
+      gl.UniformMatrix3x2fv(wanted.uvMatrix[i], 1, GL_FALSE, &core::uvMatrix(m.*use.slot)[0][0]);
+  }
   SurfaceConstants c = constants[item.object];
   // Without maps the irradiance is pi, which the division by pi takes away.
   if (features & kLightmap) c.diffuse /= core::kPi;

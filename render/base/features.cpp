@@ -10,10 +10,14 @@ namespace {
 
 bool isBlack(const core::Vec3& c) { return c == core::Vec3(0); }
 
-void addTexture(Features& features, const core::TextureSlot& slot, Feature texture, Feature secondUv) {
+/// A slot that names a UV set the mesh lacks reads the first, as the tracer does.
+void addTexture(Features& features, const core::Mesh& mesh, const core::Material& m, TextureUnit unit) {
+  const TextureUse& use = kTextureUses[static_cast<std::size_t>(unit - kBaseUnit)];
+  const core::TextureSlot& slot = m.*use.slot;
   if (!slot) return;
-  features |= texture;
-  if (slot.uvSet == 1) features |= secondUv;
+  features |= use.texture;
+  if (slot.uvSet == 1 && !mesh.uv1.empty()) features |= use.secondUv;
+  if (slot.transformed()) features |= use.transform;
 }
 
 /// Radiance per irradiance / pi, before textures.
@@ -31,11 +35,7 @@ struct NamedFeature {
 };
 constexpr std::array kMacros{NamedFeature{kLightmap, "LIGHTMAP"},
                              NamedFeature{kBackLayer, "BACK_LAYER"},
-                             NamedFeature{kBaseTexture, "BASE_TEXTURE"},
                              NamedFeature{kVertexColor, "VERTEX_COLOR"},
-                             NamedFeature{kMetallicTexture, "METALLIC_TEXTURE"},
-                             NamedFeature{kTransmissionTexture, "TRANSMISSION_TEXTURE"},
-                             NamedFeature{kEmissionTexture, "EMISSION_TEXTURE"},
                              NamedFeature{kEmission, "EMISSION"},
                              NamedFeature{kFrontEmission, "FRONT_EMISSION"},
                              NamedFeature{kAlphaMask, "ALPHA_MASK"},
@@ -49,13 +49,13 @@ std::string header(Features features) {
   const std::uint32_t attributes = attributesOf(features);
   if (attributes & (1u << kUv0)) text += "#define UV0\n";
   if (attributes & (1u << kUv1)) text += "#define UV1\n";
-  const auto uv = [&](const char* macro, Feature second) {
-    text += std::string("#define ") + macro + (features & second ? " uv1\n" : " uv0\n");
-  };
-  uv("BASE_UV", kBaseUv1);
-  uv("METALLIC_UV", kMetallicUv1);
-  uv("TRANSMISSION_UV", kTransmissionUv1);
-  uv("EMISSION_UV", kEmissionUv1);
+  for (const TextureUse& use : kTextureUses) {
+    if (!(features & use.texture)) continue;
+    const std::string macro = use.macro, uv = features & use.secondUv ? "uv1" : "uv0";
+    text += "#define " + macro + "_TEXTURE\n#define " + macro + "_UV ";
+    text += features & use.transform ? "(" + std::string(use.uvMatrix) + " * vec3(" + uv + ", 1.0))\n"
+                                     : uv + "\n";
+  }
   return text;
 }
 
@@ -112,18 +112,6 @@ in vec2 uv1;
 #ifdef VERTEX_COLOR
 in vec4 color;
 #endif
-#ifdef BASE_TEXTURE
-uniform sampler2D baseTexture;
-#endif
-#ifdef METALLIC_TEXTURE
-uniform sampler2D metallicTexture;
-#endif
-#ifdef TRANSMISSION_TEXTURE
-uniform sampler2D transmissionTexture;
-#endif
-#ifdef EMISSION_TEXTURE
-uniform sampler2D emissionTexture;
-#endif
 void main() {
   vec3 radiance = surface[0].rgb;
   float coverage = surface[1].a;
@@ -165,7 +153,7 @@ void main() {
 #endif
 #endif
 #ifdef BLEND
-  radiance *= coverage;
+  radiance *= clamp(coverage, 0.0, 1.0);
 #endif
   radianceAndId = vec4(radiance, surface[0].a);
 }
@@ -175,24 +163,23 @@ void main() {
 
 Features featuresOf(const core::Scene& scene, const core::Object& object) {
   const core::Material& m = scene.materials[object.material];
+  const core::Mesh& mesh = scene.meshOf(object);
   Features f = 0;
   const bool diffuse = !isBlack(diffuseScale(scene, m));
   if (m.alphaMode == core::AlphaMode::mask) f |= kAlphaMask;
   if (m.alphaMode == core::AlphaMode::blend) f |= kBlend;
   if (diffuse || f != 0) {
-    addTexture(f, m.baseColorTexture, kBaseTexture, kBaseUv1);
-    if (!scene.meshOf(object).colors.empty()) f |= kVertexColor;
+    addTexture(f, mesh, m, kBaseUnit);
+    if (!mesh.colors.empty()) f |= kVertexColor;
   }
   if (diffuse && !m.unlit) {
-    if (!scene.meshOf(object).lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
-    if (m.metallic != 0) addTexture(f, m.metallicRoughnessTexture, kMetallicTexture, kMetallicUv1);
-    if (m.transmission != 0) {
-      addTexture(f, m.transmissionTexture, kTransmissionTexture, kTransmissionUv1);
-    }
+    if (!mesh.lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
+    if (m.metallic != 0) addTexture(f, mesh, m, kMetallicUnit);
+    if (m.transmission != 0) addTexture(f, mesh, m, kTransmissionUnit);
   }
   if (m.emits()) {
     f |= m.doubleSided ? kEmission : kEmission | kFrontEmission;
-    addTexture(f, m.emissionTexture, kEmissionTexture, kEmissionUv1);
+    addTexture(f, mesh, m, kEmissionUnit);
   }
   return f;
 }
@@ -214,17 +201,20 @@ std::uint32_t attributesOf(Features features) {
   std::uint32_t attributes = 1u << kPosition;
   if (features & kLightmap) attributes |= 1u << kLightmapUv;
   if (features & kVertexColor) attributes |= 1u << kColor;
-  const auto uv = [&](Feature texture, Feature second) {
-    if (features & texture) attributes |= features & second ? 1u << kUv1 : 1u << kUv0;
-  };
-  uv(kBaseTexture, kBaseUv1);
-  uv(kMetallicTexture, kMetallicUv1);
-  uv(kTransmissionTexture, kTransmissionUv1);
-  uv(kEmissionTexture, kEmissionUv1);
+  for (const TextureUse& use : kTextureUses)
+    if (features & use.texture) attributes |= features & use.secondUv ? 1u << kUv1 : 1u << kUv0;
   return attributes;
 }
 
 std::string vertexShader(Features features) { return header(features) + kVertexBody; }
-std::string fragmentShader(Features features) { return header(features) + kFragmentBody; }
+
+std::string fragmentShader(Features features) {
+  std::string uniforms;
+  for (const TextureUse& use : kTextureUses) {
+    if (features & use.texture) uniforms += "uniform sampler2D " + std::string(use.sampler) + ";\n";
+    if (features & use.transform) uniforms += "uniform mat3x2 " + std::string(use.uvMatrix) + ";\n";
+  }
+  return header(features) + uniforms + kFragmentBody;
+}
 
 }  // namespace saccade::render

@@ -2,6 +2,7 @@
 // nothing for what does not.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -25,7 +26,12 @@ enum Feature : std::uint32_t {
   kBaseUv1 = 1u << 11,
   kMetallicUv1 = 1u << 12,
   kTransmissionUv1 = 1u << 13,
-  kEmissionUv1 = 1u << 14
+  kEmissionUv1 = 1u << 14,
+  // KHR_texture_transform moves its uv.
+  kBaseTransform = 1u << 15,
+  kMetallicTransform = 1u << 16,
+  kTransmissionTransform = 1u << 17,
+  kEmissionTransform = 1u << 18
 };
 using Features = std::uint32_t;
 
@@ -34,6 +40,26 @@ enum VertexAttribute : std::uint32_t { kPosition = 0, kLightmapUv = 1, kUv0 = 2,
 
 /// Texture units.
 enum TextureUnit : int { kMapsUnit, kBaseUnit, kMetallicUnit, kTransmissionUnit, kEmissionUnit, kUnitCount };
+
+/// How the base layer reads one of a material's textures.
+struct TextureUse {
+  TextureUnit unit;
+  core::TextureSlot core::Material::*slot;
+  Feature texture, secondUv, transform;
+  const char* macro;    ///< MACRO_TEXTURE: it is there; MACRO_UV: where it is read
+  const char* sampler;  ///< uniforms
+  const char* uvMatrix;
+};
+inline constexpr std::array kTextureUses{
+    TextureUse{kBaseUnit, &core::Material::baseColorTexture, kBaseTexture, kBaseUv1, kBaseTransform, "BASE",
+               "baseTexture", "baseUvMatrix"},
+    TextureUse{kMetallicUnit, &core::Material::metallicRoughnessTexture, kMetallicTexture, kMetallicUv1,
+               kMetallicTransform, "METALLIC", "metallicTexture", "metallicUvMatrix"},
+    TextureUse{kTransmissionUnit, &core::Material::transmissionTexture, kTransmissionTexture,
+               kTransmissionUv1, kTransmissionTransform, "TRANSMISSION", "transmissionTexture",
+               "transmissionUvMatrix"},
+    TextureUse{kEmissionUnit, &core::Material::emissionTexture, kEmissionTexture, kEmissionUv1,
+               kEmissionTransform, "EMISSION", "emissionTexture", "emissionUvMatrix"}};
 
 /// The uniform `surface` of the fragment program, vec4[3].
 struct SurfaceConstants {

@@ -66,6 +66,7 @@ namespace saccade::render {
   X(TEXSUBIMAGE2D, TexSubImage2D)                     \
   X(UNIFORM1I, Uniform1i)                             \
   X(UNIFORM4FV, Uniform4fv)                           \
+  X(UNIFORMMATRIX3X2FV, UniformMatrix3x2fv)           \
   X(UNIFORMMATRIX4FV, UniformMatrix4fv)               \
   X(USEPROGRAM, UseProgram)                           \
   X(VERTEXATTRIBPOINTER, VertexAttribPointer)         \

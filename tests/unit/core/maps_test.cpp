@@ -177,6 +177,9 @@ TEST(SceneKey, DependsOnAllThatLightDoes) {
   differs([](Scene& s) { s.textures[0].image.at(2, 2).b = 1; });
   differs([](Scene& s) { s.textures[0].srgb = true; });
   differs([](Scene& s) { s.lights.emplace_back(); });
+  differs([](Scene& s) { s.materials[0].clearcoat = 0.5f; });
+  differs([](Scene& s) { s.materials[0].ward.emplace(); });
+  differs([](Scene& s) { s.materials[0].baseColorTexture.scale.x = 2; });
   Scene moved = room();
   moved.cameras[0].eye.x += 1;
   moved.path = "elsewhere";

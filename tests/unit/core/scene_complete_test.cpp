@@ -183,8 +183,10 @@ TEST(MeshRepair, TangentsFollowTheTexture) {
   Mesh mirrored = m;
   for (Vec2& uv : mirrored.uv0) uv.x = 1 - uv.x;
   RepairCounts counts;
-  repairMesh(m, true, 0, counts);
-  repairMesh(mirrored, true, 0, counts);
+  Material bumpy;
+  bumpy.normalTexture.texture = 0;
+  repairMesh(m, bumpy, counts);
+  repairMesh(mirrored, bumpy, counts);
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(m.normals[i], Vec3(0, 0, 1));
     EXPECT_LT(glm::length(m.tangents[i] - Vec4(1, 0, 0, 1)), 1e-6f);
@@ -202,7 +204,7 @@ TEST(MeshRepair, UnusableNormalsAreRebuilt) {
   m.normals.assign(8, Vec3(0));
   m.normals[3] = Vec3(std::numeric_limits<float>::infinity(), 0, 0);
   RepairCounts counts;
-  repairMesh(m, false, 0, counts);
+  repairMesh(m, Material{}, counts);
   EXPECT_EQ(counts.normals, 8u);
   for (std::size_t i = 0; i < 8; ++i) {
     EXPECT_NEAR(glm::length(m.normals[i]), 1, 1e-6);

@@ -71,6 +71,25 @@ TEST(Texture, ColourIsDecodedAndAlphaIsNot) {
   EXPECT_FLOAT_EQ(t.w, 6 / 255.0f);
 }
 
+TEST(Texture, TransformsMoveTheCoordinates) {
+  const core::Scene scene = sceneWith(core::Wrap::repeat, false, false);
+  const TextureStore store(scene);
+  core::TextureSlot slot;
+  slot.texture = 0;
+  const TextureView plain = store.view(slot);
+  EXPECT_FALSE(plain.transformed);
+  slot.offset = {0.3f, -0.2f};
+  slot.rotation = 1.1f;
+  slot.scale = {2, 0.5f};
+  const TextureView moved = store.view(slot);
+  const float c = std::cos(1.1f), s = std::sin(1.1f);
+  for (const Vec2 uv : {Vec2(0), Vec2(0.4f, 0.9f), Vec2(-3.3f, 1.7f)}) {
+    const Vec2 scaled = uv * Vec2(2, 0.5f);
+    const Vec2 at(0.3f + c * scaled.x + s * scaled.y, -0.2f - s * scaled.x + c * scaled.y);
+    EXPECT_LT(glm::length(moved.sample(uv) - plain.sample(at)), 1e-4f);
+  }
+}
+
 TEST(Texture, UnsoundCoordinatesAndEmptySlots) {
   const core::Scene scene = sceneWith(core::Wrap::repeat, false, false);
   const TextureStore store(scene);
