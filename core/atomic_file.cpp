@@ -56,9 +56,7 @@ class TemporaryFile {
   bool created_ = false;
 };
 
-}  // namespace
-
-std::vector<std::uint8_t> readWholeFile(const fs::path& file) {
+std::vector<std::uint8_t> readBytes(const fs::path& file, LoadBudget* budget) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) throw Error(file.string() + ": no such file");
@@ -66,12 +64,20 @@ std::vector<std::uint8_t> readWholeFile(const fs::path& file) {
   const std::uintmax_t size = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
   if (error || !stream) throw Error(file.string() + ": cannot be opened: " + std::strerror(errno));
+  if (budget) budget->charge(size, "");
   std::vector<std::uint8_t> bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (static_cast<std::uintmax_t>(stream.gcount()) != size) {
     throw Error(file.string() + ": cannot be read to its end");
   }
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> readWholeFile(const fs::path& file) { return readBytes(file, nullptr); }
+std::vector<std::uint8_t> readWholeFile(const fs::path& file, LoadBudget& budget) {
+  return readBytes(file, &budget);
 }
 
 void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) {

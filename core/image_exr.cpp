@@ -5,15 +5,15 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfVersion.h>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
-#include <fstream>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/exr_gate.h"
 #include "core/image_codecs.h"
 #include "core/image_io.h"
 
@@ -40,55 +40,38 @@ class MemoryStream : public Imf::OStream {
   std::size_t position_ = 0;
 };
 
-/// Kind of file from its first eight bytes, before OpenEXR parses anything.
-void checkKind(const fs::path& file) {
-  if (!fs::exists(file)) throw Error(file.string() + ": no such file");
-  if (!fs::is_regular_file(file)) throw Error(file.string() + ": not a regular file");
-  std::ifstream stream(file, std::ios::binary);
-  unsigned char head[8] = {};
-  stream.read(reinterpret_cast<char*>(head), sizeof head);
-  const auto word = [&](int at) {
-    return static_cast<int>(head[at] | head[at + 1] << 8 | head[at + 2] << 16 | unsigned{head[at + 3]} << 24);
-  };
-  if (!stream || word(0) != Imf::MAGIC) throw Error(file.string() + ": not an OpenEXR image");
-  constexpr int kKinds = Imf::TILED_FLAG | Imf::NON_IMAGE_FLAG | Imf::MULTI_PART_FILE_FLAG;
-  if ((word(4) & kKinds) != 0) {
-    throw Error(file.string() + ": tiled, deep and multi-part EXR are not read; save flat scanlines");
+/// A whole file in memory.
+class MemoryInput : public Imf::IStream {
+ public:
+  MemoryInput(const std::string& name, std::span<const std::uint8_t> bytes)
+      : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  bool read(char to[], int count) override {
+    const auto wanted = static_cast<std::size_t>(count);
+    if (count < 0 || position_ > bytes_.size() || wanted > bytes_.size() - position_)
+      throw Error("the file ends too early");
+    std::memcpy(to, bytes_.data() + position_, wanted);
+    position_ += wanted;
+    return position_ < bytes_.size();
   }
-}
+  std::uint64_t tellg() override { return position_; }
+  void seekg(std::uint64_t position) override { position_ = position; }
 
-void checkHeader(const Imf::Header& header, const std::string& name) {
-  switch (header.compression()) {
-    case Imf::NO_COMPRESSION:
-    case Imf::RLE_COMPRESSION:
-    case Imf::ZIPS_COMPRESSION:
-    case Imf::ZIP_COMPRESSION:
-      break;
-    default:
-      throw Error(name + ": EXR compression other than NONE, RLE, ZIP is not read; save it with ZIP");
-  }
-  const Imath::Box2i& window = header.dataWindow();
-  codecs::checkDimensions(std::int64_t{window.max.x} - window.min.x + 1,
-                          std::int64_t{window.max.y} - window.min.y + 1, name);
-}
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::uint64_t position_ = 0;
+};
 
 /// Names of the channels that become R, G and B.
 std::array<std::string, 3> pickChannels(const Imf::ChannelList& channels, const std::string& name) {
   std::vector<std::string> names;
-  for (auto c = channels.begin(); c != channels.end(); ++c) {
-    names.emplace_back(c.name());
-    if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
-      throw Error(name + ": EXR channel " + names.back() + " is subsampled");
-    }
-  }
+  for (auto c = channels.begin(); c != channels.end(); ++c) names.emplace_back(c.name());
   if (names.size() == 1) return {names[0], names[0], names[0]};
   if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
     return {"R", "G", "B"};
   throw Error(name + ": EXR needs channels R, G, B or exactly one channel");
 }
 
-ImageRgb readPixels(Imf::InputFile& in, const std::string& name) {
-  checkHeader(in.header(), name);
+ImageRgb readPixels(Imf::InputFile& in, const std::string& name, LoadBudget& budget) {
   const Imath::Box2i window = in.header().dataWindow();
   const auto names = pickChannels(in.header().channels(), name);
   ImageRgb image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
@@ -100,7 +83,11 @@ ImageRgb readPixels(Imf::InputFile& in, const std::string& name) {
                                              sizeof(Vec3) * static_cast<std::size_t>(image.width())));
   }
   in.setFrameBuffer(buffer);
-  in.readPixels(window.min.y, window.max.y);
+  for (int row = 0; row < image.height(); row += codecs::kRowsPerLook) {
+    budget.checkTime();
+    const int rows = std::min(codecs::kRowsPerLook, image.height() - row);
+    in.readPixels(window.min.y + row, window.min.y + row + rows - 1);
+  }
   if (grey) {
     for (Vec3& p : image.pixels()) p = Vec3(p.x);
   }
@@ -139,16 +126,26 @@ void writeChannels(const fs::path& file, int width, int height, const std::vecto
 }  // namespace
 
 ImageRgb readExr(const fs::path& file) {
-  checkKind(file);
+  LoadBudget budget(LoadLimits{}, file.string());
+  return readExr(file, budget);
+}
+
+ImageRgb readExr(const fs::path& file, LoadBudget& budget) {
+  const std::string name = file.string();
+  const std::vector<std::uint8_t> bytes = readWholeFile(file, budget);
+  const ExrClaims claims = checkExrHeader(bytes, name);
+  budget.charge(static_cast<std::uint64_t>(claims.width * claims.height), sizeof(Vec3), name);
+  budget.charge(claims.workingBytes, name);
   try {
-    // Sides only; the product is checked from the header before any pixel is allocated.
-    Imf::Header::setMaxImageSize(1 << 20, 1 << 20);
-    Imf::InputFile in(file.c_str());
-    return readPixels(in, file.string());
-  } catch (const Error&) {
-    throw;
+    MemoryInput stream(name, bytes);
+    Imf::InputFile in(stream, 0);
+    ImageRgb image = readPixels(in, name, budget);
+    budget.release(claims.workingBytes + bytes.size());
+    return image;
+  } catch (const Error& e) {
+    throw Error(std::string(e.what()).starts_with(name) ? e.what() : name + ": damaged EXR: " + e.what());
   } catch (const std::exception& e) {
-    throw Error(file.string() + ": damaged EXR: " + e.what());
+    throw Error(name + ": damaged EXR: " + e.what());
   }
 }
 

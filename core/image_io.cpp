@@ -17,10 +17,15 @@ void codecs::checkDimensions(std::int64_t width, std::int64_t height, const std:
   }
 }
 
-ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name) {
-  if (codecs::isPng(bytes)) return codecs::decodePng(bytes, name);
-  if (codecs::isJpeg(bytes)) return codecs::decodeJpeg(bytes, name);
+ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget) {
+  if (codecs::isPng(bytes)) return codecs::decodePng(bytes, name, budget);
+  if (codecs::isJpeg(bytes)) return codecs::decodeJpeg(bytes, name, budget);
   throw Error(name + ": neither a PNG nor a JPEG image");
+}
+
+ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name) {
+  LoadBudget budget(LoadLimits{}, name);
+  return decodeImage(bytes, name, budget);
 }
 
 ImageRgba8 readImage8(const std::filesystem::path& file) {

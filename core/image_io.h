@@ -9,15 +9,19 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/load_budget.h"
 
 namespace saccade::core {
 
 /// Largest image that is decoded, in pixels.
 inline constexpr std::int64_t kMaxImagePixels = 16384LL * 16384LL;
 
-/// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB; CMYK is refused) from memory; the
-/// format is recognised by content; gamma and profile chunks are ignored. `name` is for messages. Throws
-/// core::Error, also for a truncated file and for a PNG whose bytes cannot hold its dimensions. Any thread.
+/// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB, CMYK) from memory; the format is
+/// recognised by content; gamma and profile chunks are ignored. `name` is for messages. The pixels' bytes
+/// stay charged to `budget`. Throws core::Error, also for a truncated file and, before anything is allocated,
+/// for one whose bytes cannot hold its dimensions. Any thread.
+ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
+/// Under the default limits.
 ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 readImage8(const std::filesystem::path& file);
 
@@ -28,6 +32,8 @@ std::vector<std::uint8_t> encodePng(const ImageRgba8& image);
 
 /// Linear RGB (R, G, B float channels; one channel reads as grey). Flat scanline NONE/RLE/ZIP only.
 ImageRgb readExr(const std::filesystem::path& file);
+/// The pixels' bytes stay charged to `budget`.
+ImageRgb readExr(const std::filesystem::path& file, LoadBudget& budget);
 void writeExr(const std::filesystem::path& file, const ImageRgb& image);
 /// Named float channels of equal size, for AOVs.
 void writeExrChannels(const std::filesystem::path& file,

@@ -19,11 +19,16 @@ namespace {
 /// A progressive file of a few kilobytes can ask for thousands of passes over a large image.
 constexpr int kMaxScans = 500;
 
+/// Every 8x8 block takes at least one bit of Huffman code, so that a byte holds at most this many pixels.
+/// Arithmetic code can go below; what its files claim is checked against this many times the bound.
+constexpr std::uint64_t kPixelsPerByte = 512, kArithmeticGain = 64;
+
 /// libjpeg reports errors by longjmp. What must be freed lives in frames that longjmp does not cross.
 struct JpegErrors {
   jpeg_error_mgr manager{};  // first: libjpeg's pointer to it is ours to all
   std::jmp_buf jump;
   char message[JMSG_LENGTH_MAX] = "";
+  const LoadBudget* budget = nullptr;
 
   static void fail(j_common_ptr codec) {
     auto* errors = reinterpret_cast<JpegErrors*>(codec->err);
@@ -34,10 +39,10 @@ struct JpegErrors {
   static void warn(j_common_ptr codec, int level) {
     if (level < 0 && codec->err->msg_code != JWRN_EXTRANEOUS_DATA) fail(codec);
   }
-  static void limitScans(j_common_ptr codec) {
-    if (reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number > kMaxScans) {
-      ERREXIT(codec, JERR_BAD_PROGRESSION);
-    }
+  static void limitWork(j_common_ptr codec) {
+    const auto* errors = reinterpret_cast<JpegErrors*>(codec->err);
+    const bool tooMany = reinterpret_cast<j_decompress_ptr>(codec)->input_scan_number > kMaxScans;
+    if (tooMany || (errors->budget && errors->budget->timeIsUp())) ERREXIT(codec, JERR_BAD_PROGRESSION);
   }
   jpeg_error_mgr* install() {
     jpeg_std_error(&manager);
@@ -54,7 +59,7 @@ struct Decompressor {
 
   Decompressor() {
     codec.err = errors.install();
-    progress.progress_monitor = JpegErrors::limitScans;
+    progress.progress_monitor = JpegErrors::limitWork;
   }
   Decompressor(const Decompressor&) = delete;
   Decompressor& operator=(const Decompressor&) = delete;
@@ -70,14 +75,31 @@ struct Decompressor {
   }
   bool readRows(Rgba8* pixels) {
     if (setjmp(errors.jump)) return false;
-    codec.out_color_space = JCS_EXT_RGBA;
+    const bool cmyk = isCmyk();
+    codec.out_color_space = cmyk ? JCS_CMYK : JCS_EXT_RGBA;
     jpeg_start_decompress(&codec);
     while (codec.output_scanline < codec.output_height) {
-      JSAMPROW row = &pixels[std::size_t{codec.output_scanline} * codec.output_width].r;
+      Rgba8* const first = &pixels[std::size_t{codec.output_scanline} * codec.output_width];
+      JSAMPROW row = &first->r;
       jpeg_read_scanlines(&codec, &row, 1);
+      if (cmyk) inkToLight(first);
     }
     jpeg_finish_decompress(&codec);
     return true;
+  }
+  bool isCmyk() const { return codec.jpeg_color_space == JCS_CMYK || codec.jpeg_color_space == JCS_YCCK; }
+  /// A row of C, M, Y, K in the pixels' four bytes to R, G, B: light = (1 - ink)(1 - black), without the
+  /// press's profile. Adobe's files hold 1 - ink.
+  void inkToLight(Rgba8* pixels) const {
+    const int turn = codec.saw_Adobe_marker ? 0 : 255;
+    for (JDIMENSION x = 0; x < codec.output_width; ++x) {
+      Rgba8& p = pixels[x];
+      const int rest = p.a ^ turn;
+      const auto light = [&](int clear) {
+        return static_cast<std::uint8_t>(((clear ^ turn) * rest + 127) / 255);
+      };
+      p = {light(p.r), light(p.g), light(p.b), 255};
+    }
   }
 };
 
@@ -121,16 +143,28 @@ bool codecs::isJpeg(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
 }
 
-ImageRgba8 codecs::decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name) {
+ImageRgba8 codecs::decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name,
+                              LoadBudget& budget) {
   Decompressor jpeg;
+  jpeg.errors.budget = &budget;
   if (!jpeg.readHeader(bytes)) throw Error(name + ": damaged JPEG: " + jpeg.errors.message);
   checkDimensions(jpeg.codec.image_width, jpeg.codec.image_height, name);
   const J_COLOR_SPACE space = jpeg.codec.jpeg_color_space;
-  if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr) {
-    throw Error(name + ": JPEG in CMYK or an unknown colour space; convert it to RGB");
-  }
+  if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr && !jpeg.isCmyk())
+    throw Error(name + ": JPEG in an unknown colour space; convert it to RGB");
+  const std::uint64_t pixels = std::uint64_t{jpeg.codec.image_width} * jpeg.codec.image_height;
+  if (pixels / (kPixelsPerByte * (jpeg.codec.arith_code ? kArithmeticGain : 1)) > bytes.size())
+    throw Error(name + ": damaged JPEG: " + std::to_string(bytes.size()) + " bytes cannot hold " +
+                std::to_string(jpeg.codec.image_width) + " x " + std::to_string(jpeg.codec.image_height) +
+                " pixels");
+  // A progressive file's coefficients (16 bits each, at most 4 components) are held beside the pixels.
+  const std::uint64_t coefficients = jpeg.codec.progressive_mode ? pixels * 8 : 0;
+  budget.charge(pixels * sizeof(Rgba8) + coefficients, name);
   ImageRgba8 image(static_cast<int>(jpeg.codec.image_width), static_cast<int>(jpeg.codec.image_height));
-  if (!jpeg.readRows(image.pixels().data())) throw Error(name + ": damaged JPEG: " + jpeg.errors.message);
+  const bool good = jpeg.readRows(image.pixels().data());
+  budget.checkTime();
+  budget.release(coefficients);
+  if (!good) throw Error(name + ": damaged JPEG: " + jpeg.errors.message);
   return image;
 }
 

@@ -22,6 +22,7 @@ struct PngState {
   png_infop info = nullptr;
   bool writing = false;
   std::string message;
+  LoadBudget* budget = nullptr;
   std::span<const std::uint8_t> in;
   std::vector<std::uint8_t> out;
 
@@ -70,19 +71,26 @@ bool readHeader(PngState& state) {
   return true;
 }
 
+/// Row by row, so that the clock can stop it: an interlaced image takes seven passes.
 bool readRows(PngState& state, png_bytepp rows) {
   if (setjmp(png_jmpbuf(state.png))) return false;
   png_set_expand(state.png);
   png_set_scale_16(state.png);
   png_set_gray_to_rgb(state.png);
   png_set_add_alpha(state.png, 0xff, PNG_FILLER_AFTER);
-  png_set_interlace_handling(state.png);
+  const int passes = png_set_interlace_handling(state.png);
   png_read_update_info(state.png, state.info);
   if (png_get_rowbytes(state.png, state.info) !=
       4 * std::size_t{png_get_image_width(state.png, state.info)}) {
     png_error(state.png, "unexpected row size");
   }
-  png_read_image(state.png, rows);
+  const png_uint_32 height = png_get_image_height(state.png, state.info);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (png_uint_32 y = 0; y < height; ++y) {
+      if (y % codecs::kRowsPerLook == 0) state.budget->checkTime();
+      png_read_row(state.png, rows[y], nullptr);
+    }
+  }
   png_read_end(state.png, nullptr);
   return true;
 }
@@ -115,8 +123,10 @@ bool codecs::isPng(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0;
 }
 
-ImageRgba8 codecs::decodePng(std::span<const std::uint8_t> bytes, const std::string& name) {
+ImageRgba8 codecs::decodePng(std::span<const std::uint8_t> bytes, const std::string& name,
+                             LoadBudget& budget) {
   PngState state(false);
+  state.budget = &budget;
   state.in = bytes;
   if (!readHeader(state)) throw Error(name + ": damaged PNG: " + state.message);
   const std::int64_t width = png_get_image_width(state.png, state.info);
@@ -127,6 +137,7 @@ ImageRgba8 codecs::decodePng(std::span<const std::uint8_t> bytes, const std::str
     throw Error(name + ": damaged PNG: " + std::to_string(bytes.size()) + " bytes cannot hold " +
                 std::to_string(width) + " x " + std::to_string(height) + " pixels");
   }
+  budget.charge(static_cast<std::uint64_t>(width * height), sizeof(Rgba8), name);
   ImageRgba8 image(static_cast<int>(width), static_cast<int>(height));
   std::vector<png_bytep> rows = rowPointers(image);
   if (!readRows(state, rows.data())) throw Error(name + ": damaged PNG: " + state.message);

@@ -35,6 +35,21 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->group(group);
+  command
+      .add_option_function<double>(
+          "--max-memory",
+          [&o](double mebibytes) {
+            o.load.limits.memoryBytes = static_cast<std::uint64_t>(mebibytes * (1u << 20));
+          },
+          "MiB that reading the scene's files may take (default: half of the machine's, at most 8192)")
+      ->check(CLI::Range(1.0, 1e9))
+      ->group(group);
+  command
+      .add_option("--max-load-seconds", o.load.limits.seconds,
+                  "Seconds that reading the scene's files may take")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
   command.add_option("--scene", o.load.scene, "glTF scene index (default: the file's own choice)")
       ->group(group);
   command

@@ -116,14 +116,25 @@ void checkObjects(Scene& scene) {
   }
 }
 
+/// With the warnings, which say where the triangles went.
+[[noreturn]] void refuseEmpty(const Scene& scene) {
+  std::string text = scene.path + ": holds no triangle to show";
+  for (std::size_t i = 0; i < scene.warnings.size(); ++i) text += (i == 0 ? " (" : "; ") + scene.warnings[i];
+  throw Error(scene.warnings.empty() ? text : text + ")");
+}
+
 }  // namespace
 
-void completeScene(Scene& scene, const LoadOptions& options) {
+void completeScene(Scene& scene, const LoadOptions& options, const LoadBudget* budget) {
+  const auto lookAtClock = [&] {
+    if (budget) budget->checkTime();
+  };
   checkObjects(scene);
   scene.timeSeconds = options.timeSeconds;
   for (const std::string& light : options.lights) addLight(scene, light);
   repairAll(scene);
-  if (scene.objects.empty()) throw Error(scene.path + ": holds no triangle to show");
+  lookAtClock();
+  if (scene.objects.empty()) refuseEmpty(scene);
   findBounds(scene);
   const bool noCamera = scene.cameras.empty(), dark = mayBeDark(scene, options);
   if (noCamera || dark) {
@@ -131,7 +142,9 @@ void completeScene(Scene& scene, const LoadOptions& options) {
     const Surroundings around = look(scene);
     addDefaults(scene, around, noCamera, dark && onlyDimEmitters(scene, around));
   }
+  lookAtClock();
   splitIntoClusters(scene);
+  lookAtClock();
   findBounds(scene);
   assignIds(scene, options.nonDiffuseThreshold);
   scene.hierarchy = buildHierarchy(scene.objects);

@@ -9,6 +9,12 @@ namespace saccade::core {
 namespace fs = std::filesystem;
 
 fs::path confinedFile(const fs::path& folder, const std::string& relative, const std::string& who) {
+  if (auto file = confinedFileIfThere(folder, relative, who)) return *file;
+  throw Error(std::string(who).append(": '").append(relative).append("' does not exist beside the scene"));
+}
+
+std::optional<fs::path> confinedFileIfThere(const fs::path& folder, const std::string& relative,
+                                            const std::string& who) {
   const std::string quoted = std::string("'").append(relative).append("'");
   const auto refuse = [&](const std::string& why) { throw Error(who + ": " + quoted + " " + why); };
   if (relative.empty() || relative.find('\0') != std::string::npos) refuse("is no file name");
@@ -22,20 +28,20 @@ fs::path confinedFile(const fs::path& folder, const std::string& relative, const
   const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, failed);
   if (failed) refuse("cannot be looked up: " + failed.message());
   fs::path real = fs::canonical(root / named, failed);
-  if (failed) refuse("does not exist beside the scene");
+  if (failed) return std::nullopt;
   const auto [rootEnd, ignored] = std::mismatch(root.begin(), root.end(), real.begin(), real.end());
   if (rootEnd != root.end()) refuse("leaves the scene's folder through a link");
   if (!fs::is_regular_file(real, failed)) refuse("is not a regular file");
   return real;
 }
 
-std::vector<std::uint8_t> readSceneFile(const fs::path& file) {
+std::vector<std::uint8_t> readSceneFile(const fs::path& file, LoadBudget& budget) {
   std::error_code failed;
   const std::uintmax_t size = fs::is_regular_file(file, failed) ? fs::file_size(file, failed) : 0;
   if (!failed && size > kMaxSceneBytes)
     throw Error(file.string() + ": " + std::to_string(size) + " bytes, more than the " +
                 std::to_string(kMaxSceneBytes) + " this program reads");
-  return readWholeFile(file);
+  return readWholeFile(file, budget);
 }
 
 }  // namespace saccade::core

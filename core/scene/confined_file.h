@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "core/load_budget.h"
 
 namespace saccade::core {
 
@@ -17,7 +20,11 @@ inline constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;
 std::filesystem::path confinedFile(const std::filesystem::path& folder, const std::string& relative,
                                    const std::string& who);
 
-/// The whole of a regular file of at most kMaxSceneBytes. Throws core::Error.
-std::vector<std::uint8_t> readSceneFile(const std::filesystem::path& file);
+/// The same, but nothing for a file that is not there.
+std::optional<std::filesystem::path> confinedFileIfThere(const std::filesystem::path& folder,
+                                                         const std::string& relative, const std::string& who);
+
+/// The whole of a regular file of at most kMaxSceneBytes, charged to `budget`. Throws core::Error.
+std::vector<std::uint8_t> readSceneFile(const std::filesystem::path& file, LoadBudget& budget);
 
 }  // namespace saccade::core

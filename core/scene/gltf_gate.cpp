@@ -69,7 +69,29 @@ Parts split(std::span<const std::uint8_t> bytes, const std::string& who) {
   return parts;
 }
 
-Json parseJson(std::span<const std::uint8_t> text, const std::string& who) {
+/// What one value of JSON becomes: in our tree, in the checked copy, in tinygltf's tree and model.
+constexpr std::uint64_t kBytesPerJsonValue = 250;
+
+/// Commas, colons and brackets outside strings: no fewer than the text has values.
+std::uint64_t countValues(std::span<const std::uint8_t> text) {
+  std::uint64_t count = 1;
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = static_cast<char>(text[i]);
+    if (inString && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      inString = !inString;
+    } else {
+      count += !inString && (c == ',' || c == ':' || c == '[' || c == '{');
+    }
+  }
+  return count;
+}
+
+Json parseJson(std::span<const std::uint8_t> text, const std::string& who, LoadBudget& budget) {
+  budget.charge(text.size(), "JSON");
+  budget.charge(countValues(text), kBytesPerJsonValue, "JSON");
   const auto depthGuard = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > kMaxJsonDepth)
       throw Error(who + ": JSON nested deeper than " + std::to_string(kMaxJsonDepth) + " levels");
@@ -92,11 +114,12 @@ int base64Value(char c) {
   return c == '/' ? 63 : -1;
 }
 
-Bytes decodeDataUri(const std::string& uri, const std::string& who) {
+Bytes decodeDataUri(const std::string& uri, const std::string& who, LoadBudget& budget) {
   static constexpr std::string_view kMark = ";base64,";
   const std::size_t mark = uri.find(kMark);
   if (mark == std::string::npos) throw Error(who + ": data URI is not base64");
   Bytes out;
+  budget.charge((uri.size() - mark) * 3 / 4, who);
   out.reserve((uri.size() - mark) * 3 / 4);
   std::uint32_t bits = 0;
   int have = 0;
@@ -131,24 +154,26 @@ std::string decodePercent(const std::string& uri, const std::string& who) {
   return out;
 }
 
-Bytes resolve(const Element& owner, const fs::path& folder) {
+Bytes resolve(const Element& owner, const fs::path& folder, LoadBudget& budget) {
   const std::string uri = owner.text("uri");
-  if (uri.starts_with("data:")) return decodeDataUri(uri, owner.path());
+  if (uri.starts_with("data:")) return decodeDataUri(uri, owner.path(), budget);
   const std::size_t colon = uri.find(':');
   if (colon != std::string::npos && uri.find('/') > colon)
     owner.refuse("URI has the scheme '" + uri.substr(0, colon) +
                  "'; only data: and files beside the scene are read");
-  return readSceneFile(confinedFile(folder, decodePercent(uri, owner.path()), owner.path()));
+  return readSceneFile(confinedFile(folder, decodePercent(uri, owner.path()), owner.path()), budget);
 }
 
-std::vector<Bytes> readBuffers(const Element& root, const Parts& parts, const fs::path& folder) {
+std::vector<Bytes> readBuffers(const Element& root, const Parts& parts, const fs::path& folder,
+                               LoadBudget& budget) {
   std::vector<Bytes> out;
   for (const Element& buffer : root.array("buffers")) {
     const std::uint64_t length = buffer.integer("byteLength", 1, kMaxSceneBytes);
     Bytes bytes;
     if (buffer.has("uri")) {
-      bytes = resolve(buffer, folder);
+      bytes = resolve(buffer, folder, budget);
     } else if (out.empty() && parts.binary) {
+      budget.charge(parts.bin.size(), buffer.path());
       bytes.assign(parts.bin.begin(), parts.bin.end());
     } else {
       buffer.refuse("has neither a URI nor the file's binary chunk");
@@ -162,15 +187,17 @@ std::vector<Bytes> readBuffers(const Element& root, const Parts& parts, const fs
 }
 
 Bytes imageBytes(const Element& root, const Element& image, const std::vector<Bytes>& buffers,
-                 const fs::path& folder) {
+                 const fs::path& folder, LoadBudget& budget) {
   if (image.has("uri") == image.has("bufferView")) image.refuse("must have either 'uri' or 'bufferView'");
-  if (image.has("uri")) return resolve(image, folder);
+  if (image.has("uri")) return resolve(image, folder, budget);
   const auto views = root.array("bufferViews");
   const Element& view = views[image.index("bufferView", views.size(), "bufferViews")];
   const Bytes& buffer = buffers[view.index("buffer", buffers.size(), "buffers")];
   const auto from =
       buffer.begin() + static_cast<std::ptrdiff_t>(view.integerOr("byteOffset", 0, 0, buffer.size()));
-  return Bytes(from, from + static_cast<std::ptrdiff_t>(view.integer("byteLength", 1, buffer.size())));
+  const std::uint64_t length = view.integer("byteLength", 1, buffer.size());
+  budget.charge(length, image.path());
+  return Bytes(from, from + static_cast<std::ptrdiff_t>(length));
 }
 
 /// Copies of the checked parts only, so that nothing unchecked reaches tinygltf.
@@ -210,12 +237,12 @@ void warnOfWhatIsLeftOut(const Json& json, Warnings& warnings) {
 
 }  // namespace
 
-GatedGltf readGatedGltf(const fs::path& file) {
+GatedGltf readGatedGltf(const fs::path& file, LoadBudget& budget) {
   const std::string who = file.filename().string();
-  const Bytes bytes = readSceneFile(file);
+  const Bytes bytes = readSceneFile(file, budget);
   if (bytes.empty()) throw Error(who + ": the file is empty");
   const Parts parts = split(bytes, who);
-  Json json = parseJson(parts.json, who);
+  Json json = parseJson(parts.json, who, budget);
   const Element root(json, who);
   GatedGltf out;
   Repairs repairs;
@@ -223,12 +250,12 @@ GatedGltf readGatedGltf(const fs::path& file) {
   checkSchema(json, who, repairs);
   checkAsset(root, kSupportedExtensions, out.warnings);
   const fs::path folder = file.parent_path();
-  out.buffers = readBuffers(root, parts, folder);
+  out.buffers = readBuffers(root, parts, folder, budget);
   const std::vector<GltfAccessor> accessors = checkAccessors(root, out.buffers);
   checkReferences(root);
   checkAnimations(json, who, accessors, repairs);
   for (const Element& image : root.array("images"))
-    out.images.push_back({image.path(), imageBytes(root, image, out.buffers, folder)});
+    out.images.push_back({image.path(), imageBytes(root, image, out.buffers, folder, budget)});
   repairs.report(out.warnings);
   warnOfWhatIsLeftOut(json, out.warnings);
   out.json = checkedJson(json, out.buffers.size());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/load_budget.h"
 
 namespace saccade::core {
 
@@ -19,8 +20,8 @@ struct EncodedImage {
 };
 
 struct GatedGltf {
-  /// Checked glTF 2.0 JSON without images, skins, morph targets and extras (but for materials'); buffer i has the URI
-  /// "buffer<i>".
+  /// Checked glTF 2.0 JSON without images, skins, morph targets and extras (but for materials'); buffer i has
+  /// the URI "buffer<i>".
   std::string json;
   std::vector<std::vector<std::uint8_t>> buffers;  ///< exactly byteLength long
   std::vector<EncodedImage> images;
@@ -33,7 +34,8 @@ inline constexpr std::uint64_t kMaxAccessorElements = 1u << 28;  ///< elements o
 /// Reads a .gltf or .glb (told apart by content) and the buffers and images it names. Throws core::Error
 /// "FILE: ELEMENT: RULE" for the first breach: version other than 2.x, an extension that is required and not
 /// supported, a reference, view or accessor out of range, a node with two parents or in a cycle, a URI that
-/// leaves the scene's folder. Any thread.
-GatedGltf readGatedGltf(const std::filesystem::path& file);
+/// leaves the scene's folder; more memory or time than `budget` has. What is
+/// returned stays charged. Any thread.
+GatedGltf readGatedGltf(const std::filesystem::path& file, LoadBudget& budget);
 
 }  // namespace saccade::core

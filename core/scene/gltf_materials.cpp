@@ -46,9 +46,9 @@ Material coreMaterial(const tinygltf::Material& from, MaterialContext& c) {
 }  // namespace
 
 void convertMaterials(const tinygltf::Model& model, const std::vector<EncodedImage>& images, float unitScale,
-                      Scene& scene) {
+                      Scene& scene, LoadBudget& budget) {
   Repairs repairs;
-  GltfTextures textures(model, images, scene, repairs);
+  GltfTextures textures(model, images, scene, repairs, budget);
   MaterialContext context{textures, repairs, unitScale};
   const std::string file = std::filesystem::path(scene.path).filename().string();
   for (const tinygltf::Material& from : model.materials) {

@@ -12,6 +12,6 @@ namespace saccade::core {
 /// `unitScale` (metres per unit). Throws core::Error for an image that cannot be decoded and for Ward's lobe
 /// of the wrong form.
 void convertMaterials(const tinygltf::Model& model, const std::vector<EncodedImage>& images, float unitScale,
-                      Scene& scene);
+                      Scene& scene, LoadBudget& budget);
 
 }  // namespace saccade::core

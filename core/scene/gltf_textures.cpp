@@ -64,10 +64,11 @@ Texture GltfTextures::texture(const tinygltf::Texture& from, const Reading& read
   const EncodedImage& encoded = images_[static_cast<std::size_t>(from.source)];
   auto decoded = decoded_.find(from.source);
   if (decoded == decoded_.end())
-    decoded = decoded_.emplace(from.source, decodeImage(encoded.bytes, encoded.name)).first;
+    decoded = decoded_.emplace(from.source, decodeImage(encoded.bytes, encoded.name, budget_)).first;
   const auto [srgb, glossiness] = reading;
   Texture out;
   out.name = encoded.name;
+  budget_.charge(decoded->second.pixels().size(), sizeof(Rgba8), encoded.name);
   out.image = decoded->second;
   out.srgb = srgb;
   if (glossiness != kNotGlossiness) glossinessToRoughness(out.image, glossiness);

@@ -17,8 +17,8 @@ namespace saccade::core {
 class GltfTextures {
  public:
   GltfTextures(const tinygltf::Model& model, const std::vector<EncodedImage>& images, Scene& scene,
-               Repairs& repairs)
-      : model_(model), images_(images), scene_(scene), repairs_(repairs) {}
+               Repairs& repairs, LoadBudget& budget)
+      : model_(model), images_(images), scene_(scene), repairs_(repairs), budget_(budget) {}
 
   /// The slot of glTF's own texture infos, KHR_texture_transform included. An index of -1, a UV set above 1
   /// and a texture without PNG or JPEG give an empty slot; the latter two are counted in `repairs`.
@@ -56,6 +56,7 @@ class GltfTextures {
   const std::vector<EncodedImage>& images_;
   Scene& scene_;
   Repairs& repairs_;
+  LoadBudget& budget_;
   std::map<std::pair<int, Reading>, int> made_;  ///< (glTF texture, reading) -> scene texture
   std::map<int, ImageRgba8> decoded_;            ///< by glTF image
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
 
 #include "core/scene/loaders.h"
 
@@ -25,6 +26,18 @@ Format formatOf(const std::filesystem::path& file) {
   return extension == ".obj" ? Format::obj : Format::unknown;
 }
 
+Scene parse(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget) {
+  switch (formatOf(file)) {
+    case Format::gltf:
+      return loadGltf(file, options, budget);
+    case Format::obj:
+      return loadObj(file, options, budget);
+    case Format::unknown:
+      break;
+  }
+  throw Error(file.string() + ": not a scene this program reads (.gltf, .glb, .obj)");
+}
+
 }  // namespace
 
 Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
@@ -35,19 +48,14 @@ Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
     throw UsageError("--unit-scale must be a positive number");
   if (!(options.timeSeconds >= 0 && options.timeSeconds < static_cast<double>(kInfinity)))
     throw UsageError("--time must be a number of seconds, 0 or more");
-  Scene scene;
-  switch (formatOf(file)) {
-    case Format::gltf:
-      scene = loadGltf(file, options);
-      break;
-    case Format::obj:
-      scene = loadObj(file, options);
-      break;
-    case Format::unknown:
-      throw Error(file.string() + ": not a scene this program reads (.gltf, .glb, .obj)");
+  LoadBudget budget(options.limits, file.filename().string());
+  try {
+    Scene scene = parse(file, options, budget);
+    completeScene(scene, options, &budget);
+    return scene;
+  } catch (const std::bad_alloc&) {
+    throw Error(file.string() + ": the machine has too little memory for this scene; try --max-memory");
   }
-  completeScene(scene, options);
-  return scene;
 }
 
 }  // namespace saccade::core

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/load_budget.h"
 #include "core/scene/scene.h"
 
 namespace saccade::core {
@@ -16,6 +17,7 @@ struct LoadOptions {
   double timeSeconds = 0;  ///< at which animations are shown; finite, >= 0
   float nonDiffuseThreshold = 0.1f;  ///< --nondiffuse
   std::vector<std::string> lights;   ///< --light TYPE:key=value,... (see parseLight)
+  LoadLimits limits;                 ///< what reading the file may cost
 };
 
 /// Reads a scene, completes it (normals, clusters, ids, hierarchy, default light and camera, plan input) and
@@ -25,8 +27,8 @@ Scene loadScene(const std::filesystem::path& file, const LoadOptions& options);
 
 /// Everything after parsing, for scenes made in memory (tests, generators): clusters, closedness, ids,
 /// bounds, hierarchy, default light and camera. Objects must hold mesh, material, name, node, primitive
-/// (Scene::add).
-void completeScene(Scene& scene, const LoadOptions& options);
+/// (Scene::add). A `budget` stops it when the time is up.
+void completeScene(Scene& scene, const LoadOptions& options, const LoadBudget* budget = nullptr);
 
 /// Adds what one --light option describes: point:pos=x,y,z,power=r,g,b | spot:... |
 /// directional:dir=..,irradiance=.. | panel:at=x,y,z,size=w,h,radiance=r,g,b (faces down unless dir= is

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 
 #include "core/scene/gltf_accessors.h"
 #include "core/scene/gltf_animation.h"
@@ -20,13 +21,13 @@ constexpr std::size_t kMaxTriangles = 64u << 20;  ///< of a whole scene, instanc
 bool bufferExists(const std::string& name, void*) { return name.starts_with("buffer"); }
 std::string bufferName(const std::string& name, void*) { return name; }
 bool readBuffer(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* user) {
-  const auto& buffers = *static_cast<std::vector<std::vector<std::uint8_t>>*>(user);
+  auto& buffers = *static_cast<std::vector<std::vector<std::uint8_t>>*>(user);
   const std::size_t index = std::strtoul(name.c_str() + std::strlen("buffer"), nullptr, 10);
   if (index >= buffers.size()) {
     *error = "no such buffer";
     return false;
   }
-  *out = buffers[index];
+  *out = std::move(buffers[index]);  // each is asked for once
   return true;
 }
 bool writeNothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
@@ -34,6 +35,8 @@ bool writeNothing(std::string*, const std::string&, const std::vector<unsigned c
 }
 
 tinygltf::Model parse(GatedGltf& gated, const std::string& who) {
+  if (gated.json.size() > std::numeric_limits<unsigned>::max())
+    throw Error(who + ": its JSON is longer than the parser counts");
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks({&bufferExists, &bufferName, &readBuffer, &writeNothing, &gated.buffers});
   tinygltf::Model model;
@@ -137,6 +140,19 @@ Mesh localMesh(const tinygltf::Model& model, const tinygltf::Primitive& primitiv
   return mesh;
 }
 
+/// Before localMesh allocates: what it returns, and as much again while it is read.
+void chargeMesh(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const std::string& what,
+                LoadBudget& budget) {
+  std::uint64_t elements = 0;
+  const auto count = [&](int accessor) {
+    return accessor < 0 ? 0 : model.accessors[static_cast<std::size_t>(accessor)].count;
+  };
+  for (const auto& [name, accessor] : primitive.attributes) elements += count(accessor);
+  const std::uint64_t corners = primitive.indices < 0 ? elements : count(primitive.indices);
+  budget.charge(elements, 2 * sizeof(Vec4), what);
+  budget.charge(corners, 4 * sizeof(std::uint32_t), what);  // a strip has three corners for each of its own
+}
+
 /// In place. A mirroring transform turns the triangles over, so that their fronts stay outside.
 void toWorld(Mesh& mesh, const Mat4& localToWorld) {
   const Mat3 linear(localToWorld);
@@ -153,7 +169,8 @@ void toWorld(Mesh& mesh, const Mat4& localToWorld) {
     std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
 }
 
-void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, Scene& scene) {
+void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, Scene& scene,
+                   LoadBudget& budget) {
   int skipped = 0, positionless = 0;
   std::size_t triangles = 0;
   for (const int n : nodes) {
@@ -171,6 +188,7 @@ void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, 
         continue;
       }
       Object object;
+      chargeMesh(model, primitive, "meshes[" + std::to_string(meshIndex) + "]", budget);
       Mesh mesh = localMesh(model, primitive);
       triangles += mesh.triangleCount();
       if (triangles > kMaxTriangles)
@@ -246,16 +264,16 @@ void convertLights(const tinygltf::Model& model, const std::vector<int>& nodes, 
 
 }  // namespace
 
-Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options) {
-  GatedGltf gated = readGatedGltf(file);
+Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget) {
+  GatedGltf gated = readGatedGltf(file, budget);
   tinygltf::Model model = parse(gated, file.filename().string());
   Scene scene;
   scene.path = file.string();
   scene.warnings = gated.warnings;
   scene.animations = poseNodes(model, options.timeSeconds, scene.warnings);
-  convertMaterials(model, gated.images, options.unitScale, scene);
+  convertMaterials(model, gated.images, options.unitScale, scene, budget);
   const std::vector<int> nodes = convertNodes(model, options, scene);
-  convertMeshes(model, nodes, scene);
+  convertMeshes(model, nodes, scene, budget);
   convertCameras(model, nodes, scene);
   convertLights(model, nodes, options.unitScale, scene);
   return scene;

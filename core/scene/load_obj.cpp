@@ -9,6 +9,7 @@
 #include "core/scene/confined_file.h"
 #include "core/scene/crease_normals.h"
 #include "core/scene/loaders.h"
+#include "core/scene/obj_gate.h"
 #include "core/scene/obj_materials.h"
 
 namespace saccade::core {
@@ -19,18 +20,19 @@ constexpr float kCreaseDegrees = 30;
 /// Reads only MTL files in the scene's folder. What goes wrong is kept and thrown once tinyobj has returned.
 class ConfinedMtlReader : public tinyobj::MaterialReader {
  public:
-  explicit ConfinedMtlReader(const std::filesystem::path& folder) : folder_(folder) {}
+  ConfinedMtlReader(const std::filesystem::path& folder, LoadBudget& budget)
+      : folder_(folder), budget_(budget) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* byName, std::string* warning, std::string* error) override {
-    std::error_code failed;
-    if (!std::filesystem::exists(folder_ / name, failed)) {
-      *warning += std::string("material library ").append(name) + " does not exist beside the scene\n";
-      return false;
-    }
+    if (!refused_.empty()) return false;
     try {
-      const auto bytes = readSceneFile(confinedFile(folder_, name, "mtllib"));
-      std::istringstream in(std::string(bytes.begin(), bytes.end()));
+      const auto file = confinedFileIfThere(folder_, name, "mtllib");
+      if (!file) {
+        *warning += std::string("material library ").append(name) + " does not exist beside the scene\n";
+        return false;
+      }
+      std::istringstream in(readGatedMtl(*file, budget_));
       tinyobj::LoadMtl(byName, materials, &in, warning, error);
     } catch (const Error& e) {
       refused_ = e.what();
@@ -43,6 +45,7 @@ class ConfinedMtlReader : public tinyobj::MaterialReader {
 
  private:
   const std::filesystem::path& folder_;
+  LoadBudget& budget_;
   std::string refused_;
 };
 
@@ -63,16 +66,18 @@ void addLines(const std::string& text, Warnings& warnings) {
     warnings.push_back("and " + std::to_string(count - kKept) + " more such lines from the OBJ parser");
 }
 
-Parsed parse(const std::filesystem::path& file, Warnings& warnings) {
+Parsed parse(const std::filesystem::path& file, Warnings& warnings, LoadBudget& budget) {
   const std::string who = file.filename().string();
   const std::filesystem::path folder = file.parent_path();
-  const auto bytes = readSceneFile(file);
-  std::istringstream in(std::string(bytes.begin(), bytes.end()));
+  Repairs repairs;
+  std::istringstream in(readGatedObj(file, repairs, budget));
+  repairs.report(warnings);
   Parsed out;
-  ConfinedMtlReader reader(folder);
+  ConfinedMtlReader reader(folder, budget);
   std::string warning, error;
   const bool good = tinyobj::LoadObj(&out.attributes, &out.shapes, &out.materials, &warning, &error, &in,
                                      &reader, true, false);
+  budget.checkTime();
   if (!reader.refused().empty()) throw Error(who + ": " + reader.refused());
   std::replace(error.begin(), error.end(), '\n', ' ');
   if (!good) throw Error(who + ": " + (error.empty() ? "not an OBJ file" : error));
@@ -208,11 +213,11 @@ int defaultMaterial(Scene& scene) {
 
 }  // namespace
 
-Scene loadObj(const std::filesystem::path& file, const LoadOptions& options) {
+Scene loadObj(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget) {
   Scene scene;
   scene.path = file.string();
-  const Parsed parsed = parse(file, scene.warnings);
-  convertObjMaterials(parsed.materials, file.parent_path(), scene);
+  const Parsed parsed = parse(file, scene.warnings, budget);
+  convertObjMaterials(parsed.materials, file.parent_path(), scene, budget);
   const std::size_t given = scene.materials.size();
   int standard = -1;
   std::uint64_t dropped = 0;

@@ -7,7 +7,7 @@
 
 namespace saccade::core {
 
-Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options);
-Scene loadObj(const std::filesystem::path& file, const LoadOptions& options);
+Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget);
+Scene loadObj(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget);
 
 }  // namespace saccade::core

@@ -71,7 +71,8 @@ void opaque(const tinyobj::material_t& from, Material& m) {
 
 class Converter {
  public:
-  Converter(const std::filesystem::path& folder, Scene& scene) : folder_(folder), scene_(scene) {}
+  Converter(const std::filesystem::path& folder, Scene& scene, LoadBudget& budget)
+      : folder_(folder), scene_(scene), budget_(budget) {}
 
   Material convert(const tinyobj::material_t& from) {
     Material m;
@@ -105,10 +106,10 @@ class Converter {
     if (known != made_.end()) return {known->second, 0};
     int index = -1;
     const std::string who = std::string("texture ").append(name);
-    if (std::filesystem::exists(folder_ / name)) {
+    if (const auto file = confinedFileIfThere(folder_, name, who)) {
       Texture texture;
       texture.name = name;
-      texture.image = readImage8(confinedFile(folder_, name, who));
+      texture.image = readTexture(*file, who);
       texture.srgb = srgb;
       index = static_cast<int>(scene_.textures.size());
       scene_.textures.push_back(std::move(texture));
@@ -119,16 +120,24 @@ class Converter {
     return {index, 0};
   }
 
+  ImageRgba8 readTexture(const std::filesystem::path& file, const std::string& who) {
+    const auto bytes = readSceneFile(file, budget_);
+    ImageRgba8 image = decodeImage(bytes, who, budget_);
+    budget_.release(bytes.size());
+    return image;
+  }
+
   const std::filesystem::path& folder_;
   Scene& scene_;
+  LoadBudget& budget_;
   std::map<std::pair<std::string, bool>, int> made_;
 };
 
 }  // namespace
 
 void convertObjMaterials(const std::vector<tinyobj::material_t>& materials,
-                         const std::filesystem::path& folder, Scene& scene) {
-  Converter converter(folder, scene);
+                         const std::filesystem::path& folder, Scene& scene, LoadBudget& budget) {
+  Converter converter(folder, scene, budget);
   for (const tinyobj::material_t& m : materials) scene.materials.push_back(converter.convert(m));
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/load_budget.h"
 #include "core/scene/scene.h"
 
 namespace saccade::core {
@@ -13,6 +14,6 @@ namespace saccade::core {
 /// Appends one material per MTL material, and the textures they use from `folder` (missing or unreadable ones
 /// are left out with a warning). Throws core::Error for a texture outside the folder.
 void convertObjMaterials(const std::vector<tinyobj::material_t>& materials,
-                         const std::filesystem::path& folder, Scene& scene);
+                         const std::filesystem::path& folder, Scene& scene, LoadBudget& budget);
 
 }  // namespace saccade::core

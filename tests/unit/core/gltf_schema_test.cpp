@@ -21,7 +21,8 @@ GatedGltf gate(const Bend& bend) {
   TemporaryFolder folder;
   GltfBuilder builder;
   bend(builder);
-  return readGatedGltf(builder.write(folder / "a.glb"));
+  LoadBudget budget({}, "a.glb");
+  return readGatedGltf(builder.write(folder / "a.glb"), budget);
 }
 
 std::string refusal(const Bend& bend) {

@@ -209,16 +209,21 @@ TEST(Jpeg, TruncatedIsRefusedAndPaddingIsNot) {
   EXPECT_EQ(decodeImage(padded, "padded").pixels(), decodeImage(whole, "whole").pixels());
 }
 
-TEST(Jpeg, FourComponentsAreRefusedByName) {
-  // Three components become four in the frame header: size, count and one entry more.
+TEST(Jpeg, ClaimsThatTheFileCannotHoldAreRefusedBeforeDecoding) {
+  // Height and width follow the frame marker, its length and the precision.
   Bytes jpeg = encodeJpeg(smoothImage(8, 8), 90);
-  const auto isFrame = [&](std::size_t i) { return jpeg[i] == 0xff && jpeg[i + 1] == 0xc0; };
   std::size_t frame = 2;
-  while (!isFrame(frame)) ++frame;
-  jpeg[frame + 3] += 3;
-  jpeg[frame + 9] = 4;
-  jpeg.insert(jpeg.begin() + static_cast<std::ptrdiff_t>(frame) + 19, {4, 0x11, 1});
-  EXPECT_NE(messageOf(jpeg).find("CMYK"), std::string::npos) << messageOf(jpeg);
+  while (!(jpeg[frame] == 0xff && jpeg[frame + 1] == 0xc0)) ++frame;
+  for (std::size_t i = 5; i < 9; ++i) jpeg[frame + i] = 0x3e;
+  LoadLimits little;
+  little.memoryBytes = 1 << 20;
+  LoadBudget budget(little, "wall.jpg");
+  try {
+    decodeImage(jpeg, "wall.jpg", budget);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("cannot hold 15934 x 15934 pixels"), std::string::npos) << e.what();
+  }
 }
 
 TEST(DecodeImage, ContentDecidesNotTheName) {
