@@ -16,11 +16,18 @@ struct BakeOptions {
   SceneOptions scene;
   RunOptions run;
   std::string output;
+  std::string importFolder;
+  float importScale = 1;
 };
 
 int bake(const BakeOptions& o) {
   const auto start = std::chrono::steady_clock::now();
-  BakeRequest request{.file = o.output, .always = true, .threads = tracerThreads(o.run), .seed = o.run.seed};
+  BakeRequest request{.file = o.output,
+                      .always = true,
+                      .threads = tracerThreads(o.run),
+                      .seed = o.run.seed,
+                      .importFolder = o.importFolder,
+                      .importScale = o.importScale};
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
   std::printf("%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(),
@@ -40,6 +47,14 @@ void addBakeCommand(CLI::App& program, Run& run) {
   addSceneOptions(*command, o->scene);
   command->add_option("-o,--output", o->output, "Map file to write (default: the user's cache folder)");
   command->add_option("--photons", o->scene.photons, "Particles to trace, instead of what the quality says");
+  command->add_option(
+      "--import", o->importFolder,
+      "Folder of another program's lightmaps, NODE.lightmap.jpg (or .png, .exr): nodes of that name "
+      "take their light from it, through their second UV set; the rest is baked");
+  command
+      ->add_option("--import-scale", o->importScale,
+                   "Multiplies imported light: irradiance = pi x value x this; 8-bit values are sRGB")
+      ->capture_default_str();
   addRunOptions(*command, o->run);
   command->callback([o, &run] { run = [o] { return bake(*o); }; });
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/cli/console.h"
+#include "app/session/lightmap_import.h"
 #include "raytrace/bake/baker.h"
 #include "raytrace/bake/charts.h"
 
@@ -50,6 +51,21 @@ void store(const std::filesystem::path& file, const core::IlluminationMaps& maps
   }
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Scene& scene) {
+  LightmapReport report;
+  raytrace::ImportedLight imported = readLightmaps(bake.importFolder, scene, bake.importScale, report);
+  for (const std::string& line : report.taken) spdlog::info("imported {}", line);
+  printWarnings(report.warnings);
+  if (!report.baked.empty()) spdlog::info("baked, for want of a lightmap: {}", joined(report.baked));
+  return imported;
+}
+
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
                                const BakeRequest& bake, std::uint64_t key, const std::stop_token& stop) {
   ProgressBar bar("baking");
@@ -58,6 +74,11 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
   bakeOptions.photons = options.photons;
   bakeOptions.seed = bake.seed;
   bakeOptions.threads = bake.threads;
+  raytrace::ImportedLight imported;
+  if (!bake.importFolder.empty()) {
+    imported = importReported(bake, w.scene);
+    bakeOptions.imported = &imported;
+  }
   core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bakeOptions,
                                                    {[&](double fraction) { bar.show(fraction); }, stop});
   maps.key = key;

@@ -31,6 +31,8 @@ struct BakeRequest {
   bool always = false;         ///< bake even when a valid file exists (the `bake` command)
   int threads = 1;             ///< 0 = inline
   std::uint32_t seed = 1;
+  std::filesystem::path importFolder;  ///< lightmaps of another program; empty = none
+  float importScale = 1;               ///< irradiance = pi * value * scale
 };
 
 /// Loads the scene and prints its warnings. Throws core::Error.

@@ -9,6 +9,7 @@
 #include "raytrace/bake/density.h"
 #include "raytrace/bake/direct.h"
 #include "raytrace/bake/gutters.h"
+#include "raytrace/bake/imported_light.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
 
@@ -106,6 +107,8 @@ core::IlluminationMaps bakeMaps(const World& world, std::vector<core::ObjectChar
     const double step = (1 - kParticleShare) / maps.layers, from = kParticleShare + layer * step;
     std::vector<Vec3> irradiance =
         bakeLayer(world, texels, particles, layer, preset, options, progress, {from, from + step});
+    if (options.imported)
+      importIrradiance(texels, world.scene(), *options.imported, options.threads, irradiance);
     fillGutters(texels, irradiance);
     std::uint16_t* out = maps.texels.data() + static_cast<std::size_t>(layer) * texels.texelCount() * 3;
     for (const Vec3& e : irradiance) {

@@ -8,6 +8,7 @@
 
 #include "core/maps.h"
 #include "core/progress.h"
+#include "raytrace/bake/imported_light.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
@@ -16,7 +17,8 @@ struct BakeOptions {
   std::string quality = "medium";  ///< preview, medium or high
   std::uint64_t photons = 0;       ///< particles; 0 = as the quality says
   std::uint32_t seed = 1;
-  int threads = 0;  ///< 0 = all on the calling thread; the maps do not depend on it
+  int threads = 0;                          ///< 0 = all on the calling thread; the maps do not depend on it
+  const ImportedLight* imported = nullptr;  ///< replaces what is baked for some objects; null: none
 };
 
 /// Particles that a quality stands for. Throws core::UsageError for an unknown name.

@@ -1,0 +1,146 @@
+#include "app/session/lightmap_import.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "core/error.h"
+#include "core/image_io.h"
+#include "raytrace/bake/charts.h"
+
+namespace saccade::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kStrangersNamed = 5;
+
+std::string lowerExtension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  return extension;
+}
+
+bool isImage(const fs::path& file) {
+  constexpr std::array kExtensions = {".jpg", ".jpeg", ".png", ".exr"};
+  const std::string extension = lowerExtension(file);
+  return std::any_of(kExtensions.begin(), kExtensions.end(),
+                     [&](const char* known) { return extension == known; });
+}
+
+/// "cornellBox.000.lightmap.jpg" is of the node "cornellBox.000".
+std::string nodeNameOf(const fs::path& file) {
+  constexpr std::string_view kSuffix = ".lightmap";
+  std::string name = file.stem().string();
+  if (name.size() > kSuffix.size() && name.ends_with(kSuffix)) name.resize(name.size() - kSuffix.size());
+  return name;
+}
+
+std::map<std::string, std::vector<fs::path>> imagesByNode(const fs::path& folder) {
+  std::error_code failed;
+  std::map<std::string, std::vector<fs::path>> out;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (isImage(at->path()) && at->is_regular_file()) out[nodeNameOf(at->path())].push_back(at->path());
+  if (failed)
+    throw core::Error(folder.string() + ": " + failed.message() + "; --import takes a folder of images");
+  return out;
+}
+
+core::ImageRgb readIrradiance(const fs::path& file, float scale) {
+  core::ImageRgb out;
+  if (lowerExtension(file) == ".exr") {
+    out = core::readExr(file);
+  } else {
+    const core::ImageRgba8 encoded = core::readImage8(file);
+    out = core::ImageRgb(encoded.width(), encoded.height());
+    std::array<float, 256> linear;
+    for (std::size_t i = 0; i < linear.size(); ++i)
+      linear[i] = core::decodeSrgb(static_cast<float>(i) / 255.0f);
+    std::transform(encoded.pixels().begin(), encoded.pixels().end(), out.pixels().begin(),
+                   [&](const core::Rgba8& p) { return core::Vec3(linear[p.r], linear[p.g], linear[p.b]); });
+  }
+  const float factor = std::numbers::pi_v<float> * scale;
+  for (core::Vec3& pixel : out.pixels()) {
+    for (int c = 0; c < 3; ++c) {
+      const float value = pixel[c] * factor;
+      pixel[c] = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
+    }
+  }
+  return out;
+}
+
+/// Objects of the nodes called `name` that show light, by whether their meshes have a place for it.
+struct Takers {
+  bool named = false;
+  std::vector<std::size_t> able, unable;
+};
+Takers takersOf(const core::Scene& scene, const std::string& name) {
+  Takers out;
+  for (const core::Node& node : scene.nodes) out.named = out.named || node.name == name;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const core::Object& object = scene.objects[o];
+    if (object.node < 0 || scene.nodes[static_cast<std::size_t>(object.node)].name != name) continue;
+    if (!raytrace::showsIrradiance(scene.materials[static_cast<std::size_t>(object.material)])) continue;
+    (raytrace::hasLightmapUv(scene.meshOf(object)) ? out.able : out.unable).push_back(o);
+  }
+  return out;
+}
+
+void reportBaked(const core::Scene& scene, const raytrace::ImportedLight& imported, LightmapReport& report) {
+  std::set<std::string> names;
+  for (std::size_t o = 0; o < scene.objects.size(); ++o) {
+    const core::Object& object = scene.objects[o];
+    if (imported.imageOfObject[o] >= 0 || object.node < 0) continue;
+    if (!raytrace::showsIrradiance(scene.materials[static_cast<std::size_t>(object.material)])) continue;
+    names.insert(scene.nodes[static_cast<std::size_t>(object.node)].name);
+  }
+  report.baked.assign(names.begin(), names.end());
+}
+
+}  // namespace
+
+raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene& scene, float scale,
+                                      LightmapReport& report) {
+  if (!(scale > 0 && scale < core::kInfinity))
+    throw core::UsageError("--import-scale must be a positive number");
+  raytrace::ImportedLight out;
+  out.imageOfObject.assign(scene.objects.size(), -1);
+  std::size_t strangers = 0;
+  for (const auto& [name, files] : imagesByNode(folder)) {
+    const Takers takers = takersOf(scene, name);
+    const std::string shown = files[0].filename().string();
+    if (!takers.named) {
+      if (strangers++ < kStrangersNamed)
+        report.warnings.push_back("'" + shown + "' matches no node of the scene");
+      continue;
+    }
+    if (files.size() > 1)
+      throw core::Error(folder.string() + ": '" + shown + "' and '" + files[1].filename().string() +
+                        "' are for the same node; keep one of them");
+    if (!takers.unable.empty())
+      report.warnings.push_back("node '" + name + "' has parts without a second UV set; '" + shown +
+                                "' does not light them, they are baked");
+    if (takers.able.empty()) continue;
+    out.images.push_back(readIrradiance(files[0], scale));
+    for (const std::size_t o : takers.able) out.imageOfObject[o] = static_cast<int>(out.images.size()) - 1;
+    report.taken.push_back(shown + " (" + std::to_string(out.images.back().width()) + "x" +
+                           std::to_string(out.images.back().height()) + "): node '" + name + "', " +
+                           std::to_string(takers.able.size()) + " objects");
+  }
+  if (strangers > kStrangersNamed)
+    report.warnings.push_back("and " + std::to_string(strangers - kStrangersNamed) +
+                              " more images match no node");
+  if (out.images.empty())
+    throw core::Error(
+        folder.string() +
+        ": no image there fits a node of the scene; name them NODE.lightmap.png (or .jpg, .exr) "
+        "after nodes whose meshes have a second UV set");
+  reportBaked(scene, out, report);
+  return out;
+}
+
+}  // namespace saccade::app
