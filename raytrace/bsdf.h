@@ -1,27 +1,36 @@
 // Scattering at a surface point.
 //
-//   metallic-roughness (glTF 2.0, appendix B) with KHR_materials_transmission, _ior, _specular:
+//   metallic-roughness (glTF 2.0, appendix B) with KHR_materials_transmission, _ior, _specular, _anisotropy:
 //     S   GGX reflection, height-correlated Smith, Schlick's Fresnel
 //     D   Lambert layered under it as core/scene/specular_albedo.h says
 //     G   dielectric with exact Fresnel: GGX reflection and refraction (Walter et al. 2007); a closed object
 //     is a
 //         solid, any other a thin sheet whose two sides are summed: R = 2F / (1 + F)
-//   mixed as metallic S(baseColor) + (1 - metallic) [(1 - transmission) (S + D) + transmission G].
+//   mixed as metallic S(baseColor) + (1 - metallic) [(1 - transmission) (S + D) + transmission G];
+//   or Ward's lobe over Lambert (ward.h);
+//   under KHR_materials_sheen and over that _clearcoat (layers.h).
 // Visible normals are sampled (Heitz 2018, by the spherical caps of Dupuy and Benyoub 2023). Below
-// kDeltaAlpha S and G are mirrors. Refraction carries no eta^2: camera and light paths both begin and end
-// outside solids, where the factors cancel, so one function serves radiance and photons.
+// kDeltaAlpha S, G and the coat are mirrors. Refraction carries no eta^2: camera and light paths both begin
+// and end outside solids, where the factors cancel, so one function serves radiance and photons.
 #pragma once
 
 #include <optional>
 
+#include "raytrace/base_lobe.h"
+#include "raytrace/layers.h"
+#include "raytrace/microfacet.h"
 #include "raytrace/surface.h"
 
 namespace saccade::raytrace {
 
-/// Perceptual roughness squared; below this a lobe is a delta.
-inline constexpr float kDeltaAlpha = 1e-3f;
-
-enum Lobes : unsigned { kLobeDiffuse = 1, kLobeSpecular = 2, kLobeAll = 3 };
+enum Lobes : unsigned {
+  kLobeDiffuse = 1,
+  kLobeBase = 2,  ///< S and G, or Ward
+  kLobeSheen = 4,
+  kLobeCoat = 8,
+  kLobeSpecular = kLobeBase | kLobeSheen | kLobeCoat,
+  kLobeAll = kLobeDiffuse | kLobeSpecular
+};
 
 /// What lies under the specular lobe.
 enum class DiffuseModel {
@@ -38,38 +47,25 @@ struct BsdfSample {
   bool transmitted = false;
 };
 
-/// Unpolarised Fresnel reflectance of a dielectric. cosI in [0, 1], eta = n_t / n_i > 0; 1 beyond the
-/// critical angle.
-float fresnelDielectric(float cosI, float eta);
-
-/// GGX density of facet normals, alpha > 0, h unit in the local frame (x and y carry the precision near the
-/// pole).
-float ggxD(const Vec3& h, float alpha);
-/// Smith's Lambda.
-float ggxLambda(float cosV, float alpha);
-/// Visible normal for a view direction in the local frame, v.z > 0.
-Vec3 sampleVisibleNormal(const Vec3& v, float alpha, const Vec2& u);
-
-/// An orthonormal basis around a unit normal (Duff et al. 2017); sound at n = (0, 0, -1).
-struct Frame {
-  Vec3 t, b, n;
-  explicit Frame(const Vec3& normal);
-  Vec3 toLocal(const Vec3& w) const { return {glm::dot(w, t), glm::dot(w, b), glm::dot(w, n)}; }
-  Vec3 toWorld(const Vec3& w) const { return w.x * t + w.y * b + w.z * n; }
-};
-
 /// The material at one point seen from one direction. A value; keeps no reference to the surface's memory.
 class Bsdf {
  public:
   /// `toEye`: unit, from the surface to where the path came from.
   Bsdf(const Surface& surface, const Vec3& toEye, DiffuseModel diffuse = DiffuseModel::lambert);
 
-  /// The specular lobes are deltas.
-  bool delta() const { return delta_; }
-  float alpha() const { return alpha_; }  ///< GGX
-  bool hasSpecular() const { return specularAny_; }
+  /// The base's specular lobes are deltas.
+  bool delta() const { return base_.delta(); }
+  bool hasSpecular() const { return base_.any(); }
   bool hasDiffuse() const { return diffuseAny_; }
-  bool transmits() const { return glass_ > 0; }
+  bool transmits() const { return base_.transmits(); }
+  /// Sheen or a coat lies over the base.
+  bool layered() const { return layered_; }
+  /// The lobes beyond Lambert that are no deltas.
+  unsigned roughLobes() const;
+  /// Of the widest rough lobe: GGX or Ward, 1 for sheen.
+  float alpha() const;
+  /// About what the lobes reflect and transmit of light towards the eye, luminance; deltas counted.
+  float estimate(unsigned lobes) const;
 
   /// f(toEye, wi) |cos wi| without deltas; wi unit. 0 across the surface where nothing transmits.
   Vec3 eval(const Vec3& wi, unsigned lobes) const;
@@ -78,46 +74,43 @@ class Bsdf {
   /// Nothing when the direction carries no light. uLobe chooses lobes, u the direction; all in [0, 1).
   std::optional<BsdfSample> sample(float uLobe, const Vec2& u, unsigned lobes) const;
 
-  /// For deltas: both branches with their whole weights (no probability).
+  /// For deltas: the base's branches with their whole weights (no probability).
   BsdfSample deltaReflection() const;
   std::optional<BsdfSample> deltaTransmission() const;
+  /// The mirror of a smooth coat; nothing for a rough one or none.
+  std::optional<BsdfSample> coatReflection() const;
 
   /// View-dependent Lambert under an irradiance map: baseColor ... (1 - E(v)) / pi, times irradiance =
   /// radiance (exact for constant illumination; core/scene/specular_albedo.h).
   Vec3 diffuseUnderMap() const;
 
  private:
-  struct Interface {
-    Vec3 reflect;   ///< reflectance of the facet, S and G together
-    Vec3 transmit;  ///< transmittance of the facet
-  };
-  Interface facet(float cosVH) const;
-  float reflectProbability(const Interface& f) const;
+  void addLayers(const Surface& surface, const ExtensionPoint& extension);
   float diffuseProbability(unsigned lobes) const;
-  Vec3 evalSpecular(const Vec3& wi) const;
-  float pdfSpecular(const Vec3& wi) const;
-  Vec3 evalDiffuse(const Vec3& wi) const;
-  std::optional<BsdfSample> sampleSpecular(float uLobe, const Vec2& u) const;
-  Vec3 refract(const Vec3& h, float cosVH) const;
+  Vec3 evalDiffuse(const Vec3& l) const;
+  core::OverLambert overLambert() const;
+  float attenuation(const Vec3& l) const;
+  float coatAttenuation(const Vec3& l) const;
+  Vec3 evalLayered(const Vec3& wi, const Vec3& l, unsigned lobes) const;
+  float pdfLayered(const Vec3& wi, const Vec3& l, unsigned lobes) const;
+  std::optional<BsdfSample> sampleLayered(float uLobe, const Vec2& u, unsigned lobes) const;
+  static Vec3 sampleCosine(const Vec2& u);
+  BsdfSample toWorld(const LocalSample& local) const;
   bool sideAgrees(const Vec3& wiWorld, const Vec3& wiLocal) const;
 
   Frame frame_;
   Vec3 ng_;
-  Vec3 v_;               ///< toEye, local
-  float alpha_ = 1;      ///< GGX
-  float roughness_ = 1;  ///< perceptual
-  float eta_ = 1;        ///< n_t / n_i for light going the way of -toEye
-  float mirror_ = 1;     ///< weight of S
-  float glass_ = 0;      ///< weight of G
-  float lambert_ = 0;    ///< weight of D
-  Vec3 f0_{0};           ///< of S, metal and dielectric mixed
-  Vec3 f0Dielectric_{0};
-  float f90_ = 1, f90Dielectric_ = 1;
+  Vec3 v_;  ///< toEye, local
+  BaseLobe base_;
+  float roughness_ = 1;  ///< perceptual; of the lobe over Lambert
   Vec3 baseColor_{0};
-  float lambdaV_ = 0;
   DiffuseModel diffuseModel_ = DiffuseModel::lambert;
-  float diffuseShare_ = 0;  ///< probability of D when all lobes are sampled
-  bool thin_ = false, straight_ = false, delta_ = false, specularAny_ = false, diffuseAny_ = false;
+  float diffuseShare_ = 0;  ///< probability of D when all lobes are sampled and nothing lies over them
+  bool diffuseAny_ = false, layered_ = false;
+  bool within_ = false;  ///< seen from inside a solid: the layers lie behind the surface
+  std::optional<Sheen> sheen_;
+  std::optional<Coat> coat_;
+  float estimates_[4] = {};  ///< by lobe, in the order of Lobes; only when layered
 };
 
 }  // namespace saccade::raytrace

@@ -8,6 +8,7 @@
 #include "core/math/random.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/lights.h"
+#include "raytrace/medium.h"
 #include "raytrace/surface.h"
 
 namespace saccade::raytrace {
@@ -28,8 +29,6 @@ constexpr float kNarrowAlpha = 0.04f;
 constexpr int kMaxLayers = 64;
 /// A point of the depth buffer that faces away is shaded as if seen this far above its horizon (a cosine).
 constexpr float kGrazing = 0.01f;
-
-float largest(const Vec3& c) { return std::max({c.x, c.y, c.z}); }
 
 float powerHeuristic(float a, float b) {
   const float a2 = a * a, b2 = b * b;
@@ -59,6 +58,25 @@ class Walk {
   }
 
  private:
+  /// The solids that the walk is in while it follows one ray: only kept where a solid attenuates.
+  class Following {
+   public:
+    Following(Walk& walk, const Surface& surface, const Vec3& direction) : walk_(walk) {
+      if (!walk.world_.attenuates()) return;
+      before_ = walk.inside_;
+      walk.inside_.leave(surface, direction);
+    }
+    ~Following() {
+      if (before_) walk_.inside_ = *before_;
+    }
+    Following(const Following&) = delete;
+    Following& operator=(const Following&) = delete;
+
+   private:
+    Walk& walk_;
+    std::optional<Inside> before_;
+  };
+
   /// A ray and what it met.
   struct Leg {
     Ray ray;
@@ -77,15 +95,18 @@ class Walk {
   Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
   Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
   Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
-  Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
-  Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoice& choice, float rays,
-                   float weight);
+  Vec3 layeredBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 branch(const Surface& surface, const BsdfSample& sample, float chance, int depth, float weight);
+  Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight);
+  Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, unsigned lobes, const LightChoice& choice,
+                   float rays, float weight);
   float emissionWeight(const Hit& hit, const Vec3& direction, float distance, const RoughRay* rough) const;
 
   const World& world_;
   const CorrectiveOptions& options_;
   core::PixelSampler sampler_;
   RayCounters& counters_;
+  Inside inside_;
 };
 
 float Walk::emissionWeight(const Hit& hit, const Vec3& direction, float distance,
@@ -118,6 +139,10 @@ Vec3 Walk::received(const Leg& leg, int depth, float weight, const RoughRay* rou
       emitted = surface.emitted();
     }
     if (largest(emitted) > 0) radiance += emitted * emissionWeight(hit, ray.direction, travelled, rough);
+    if (world_.attenuates()) {
+      const bool front = glm::dot(hit.ng, ray.direction) <= 0;
+      radiance *= inside_.transmittance(world_, hit.object, front, travelled);
+    }
     sum += radiance * (through * coverage);
     through *= 1 - coverage;
     if (!(through > 0)) break;
@@ -147,17 +172,56 @@ Vec3 Walk::specular(const Surface& surface, const Bsdf& bsdf, int depth, float w
     compensation = 1 / survival;
     weight = kRouletteWeight;
   }
-  const Vec3 radiance =
-      bsdf.delta() ? deltaBranches(surface, bsdf, depth, weight) : roughRays(surface, bsdf, depth, weight);
+  Vec3 radiance(0);
+  if (bsdf.layered()) {
+    radiance = layeredBranches(surface, bsdf, depth, weight);
+  } else if (bsdf.delta()) {
+    radiance = deltaBranches(surface, bsdf, depth, weight);
+  } else {
+    radiance = roughRays(surface, bsdf, kLobeSpecular, depth, weight);
+  }
   return radiance * compensation;
+}
+
+Vec3 Walk::branch(const Surface& surface, const BsdfSample& s, float chance, int depth, float weight) {
+  const Following following(*this, surface, s.direction);
+  const Vec3 factor = s.weight / chance;
+  return factor * incoming(surface.leave(s.direction), depth + 1, weight * largest(factor));
+}
+
+/// A smooth coat, a smooth base and the rough lobes: all followed at the first hits, later one of them.
+Vec3 Walk::layeredBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  const std::optional<BsdfSample> coat = bsdf.coatReflection();
+  const unsigned rough = bsdf.roughLobes();
+  const float part[] = {coat ? largest(coat->weight) : 0, bsdf.delta() ? bsdf.estimate(kLobeBase) : 0,
+                        bsdf.estimate(rough)};
+  const auto follow = [&](int kind, float share) {
+    if (kind == 0) return branch(surface, *coat, 1, depth, share);
+    if (kind == 1) return deltaBranches(surface, bsdf, depth, share);
+    return roughRays(surface, bsdf, rough, depth, share);
+  };
+  Vec3 sum(0);
+  if (depth < kSplitDepth) {
+    for (int kind = 0; kind < 3; ++kind) {
+      if (part[kind] > 0) sum += follow(kind, weight);
+    }
+    return sum;
+  }
+  const float total = part[0] + part[1] + part[2];
+  if (!(total > 0)) return sum;
+  float at = sampler_.next1D() * total;
+  int kind = 0;
+  while (kind < 2 && at >= part[kind]) at -= part[kind++];
+  if (!(part[kind] > 0)) return sum;  // rounding
+  const float chance = part[kind] / total;
+  return follow(kind, weight / chance) / chance;
 }
 
 Vec3 Walk::deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
   const BsdfSample reflection = bsdf.deltaReflection();
   const std::optional<BsdfSample> transmission = bsdf.deltaTransmission();
   const auto follow = [&](const BsdfSample& s, float chance) {
-    const Vec3 factor = s.weight / chance;
-    return factor * incoming(surface.leave(s.direction), depth + 1, weight * largest(factor));
+    return branch(surface, s, chance, depth, weight);
   };
   if (!transmission) return follow(reflection, 1);
   const float r = largest(reflection.weight), t = largest(transmission->weight);
@@ -168,7 +232,7 @@ Vec3 Walk::deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, fl
   return sampler_.next1D() < chance ? follow(reflection, chance) : follow(*transmission, 1 - chance);
 }
 
-Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight) {
   const int count = depth == 0 ? options_.glossyRays : 1;
   const auto rays = static_cast<float>(count);
   // Inside a solid every light is behind its wall; only rays that leave find it.
@@ -179,8 +243,8 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
   for (int i = 0; i < count; ++i) {
     Vec2 u = sampler_.next2D();
     u.x = (static_cast<float>(i) + u.x) / rays;
-    const float uLobe = bsdf.transmits() ? sampler_.next1D() : 0;
-    const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, kLobeSpecular);
+    const float uLobe = bsdf.transmits() || bsdf.layered() ? sampler_.next1D() : 0;
+    const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, lobes);
     if (!s) continue;
     Leg& leg = legs[sent++].emplace(send(surface.leave(s->direction)));
     leg.density = lights && !s->delta ? s->pdf * rays : 0;
@@ -190,28 +254,32 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, int depth, float 
   Vec3 sum(0);
   if (lights) {
     choice = world_.lights().choose(surface.position);
-    sum = lightSample(surface, bsdf, choice, rays, weight);
+    sum = lightSample(surface, bsdf, lobes, choice, rays, weight);
   }
   for (int i = 0; i < sent; ++i) {
     const Leg& leg = *legs[i];
     const RoughRay rough{&choice, leg.density};
+    const Following following(*this, surface, leg.ray.direction);
     sum += leg.factor *
            received(leg, depth + 1, weight * largest(leg.factor), leg.density > 0 ? &rough : nullptr);
   }
   return sum;
 }
 
-Vec3 Walk::lightSample(const Surface& surface, const Bsdf& bsdf, const LightChoice& choice, float rays,
-                       float weight) {
+Vec3 Walk::lightSample(const Surface& surface, const Bsdf& bsdf, unsigned lobes, const LightChoice& choice,
+                       float rays, float weight) {
   const float uLight = sampler_.next1D();
   const Vec2 u = sampler_.next2D();
   LightSample light;
   if (!world_.lights().sample(choice, uLight, u, light)) return Vec3(0);
-  const Vec3 f = bsdf.eval(light.direction, kLobeSpecular);
+  const Vec3 f = bsdf.eval(light.direction, lobes);
   if (!(largest(f) > 0)) return Vec3(0);
-  const float mis =
-      light.delta ? 1 : powerHeuristic(light.pdf, rays * bsdf.pdf(light.direction, kLobeSpecular));
+  const float mis = light.delta ? 1 : powerHeuristic(light.pdf, rays * bsdf.pdf(light.direction, lobes));
   Vec3 contribution = f * light.radiance * (mis / light.pdf);
+  if (world_.attenuates()) {
+    const Following following(*this, surface, light.direction);
+    contribution *= inside_.transmittance(world_, light.distance);
+  }
   const float seen = weight * largest(contribution);
   if (seen < kFaintLight) {
     const float survival = seen / kFaintLight;
@@ -286,13 +354,28 @@ core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, in
   sample.cosView = std::clamp(glm::dot(surface.ns, -direction), 0.0f, 1.0f);
   sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(windowDepth) : primary.hit.t;
 
-  const Vec3 sum = correction(surface, bsdf, direction, x, y, counters);
+  Vec3 sum = correction(surface, bsdf, direction, x, y, counters);
+  if (world_.attenuates() && !surface.front && surface.closed) {
+    // The camera is inside this solid, which tints what the base layer shows too.
+    const float distance = glm::length(surface.position - frame.view.camera().eye);
+    const Vec3 left = Inside().transmittance(world_, surface.object, false, distance);
+    sum = left * sum - (Vec3(1) - left) * shown(surface);
+  }
   if (finite(sum)) {
     sample.correction = sum;
   } else {
     ++counters.nonFinite;
   }
   return sample;
+}
+
+Vec3 CorrectiveTracer::shown(const Surface& surface) const {
+  if (!surface.scatters()) return Vec3(0);
+  const Vec3 reflected = surface.material->unlit
+                             ? surface.point.baseColor
+                             : baseAlbedo(surface.point) * (1 / core::kPi) *
+                                   world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1);
+  return (surface.emitted() + reflected) * surface.point.coverage;
 }
 
 Vec3 CorrectiveTracer::correction(const Surface& surface, const Bsdf& bsdf, const Vec3& direction, int x,

@@ -45,6 +45,8 @@ class CorrectiveTracer {
     bool fromDepth = false;
   };
   Primary aim(const core::FrameSnapshot& frame, int x, int y, RayCounters& counters) const;
+  /// What the base layer shows of a point.
+  Vec3 shown(const Surface& surface) const;
   Vec3 correction(const Surface& surface, const Bsdf& bsdf, const Vec3& direction, int x, int y,
                   RayCounters& counters) const;
 

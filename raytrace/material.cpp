@@ -1,8 +1,29 @@
 #include "raytrace/material.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/scene/specular_albedo.h"
 
 namespace saccade::raytrace {
+
+Vec3 absorption(const core::Material& m) {
+  Vec3 sigma(0);
+  if (!m.attenuates()) return sigma;
+  for (int c = 0; c < 3; ++c) {
+    const float left = std::clamp(m.attenuationColor[c], 0.0f, 1.0f);
+    sigma[c] = left < 1 ? -std::log(left) / m.attenuationDistance : 0;
+  }
+  return sigma;
+}
+
+Vec3 beerLambert(const Vec3& absorption, float distance) {
+  Vec3 left(1);
+  for (int c = 0; c < 3; ++c) {
+    if (absorption[c] > 0 && distance > 0) left[c] = std::exp(-absorption[c] * distance);
+  }
+  return left;
+}
 
 CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material& m,
                                  const TextureStore& textures) {
@@ -30,6 +51,8 @@ CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material&
   c.specularTexture = textures.view(m.specularTexture);
   c.specularColorTexture = textures.view(m.specularColorTexture);
   c.transmissionTexture = textures.view(m.transmissionTexture);
+  c.extension = compileExtension(m, textures);
+  c.absorption = absorption(m);
   c.textured = c.baseColorTexture || c.metallicRoughnessTexture || c.emissionTexture || c.specularTexture ||
                c.specularColorTexture || c.transmissionTexture;
   return c;

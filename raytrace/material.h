@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 
 #include "core/scene/scene.h"
+#include "raytrace/extension.h"
 #include "raytrace/ray.h"
 #include "raytrace/texture_store.h"
 
@@ -30,11 +33,21 @@ struct CompiledMaterial {
   bool textured = false;  ///< some texture other than the normal map: parameters vary over the surface
   TextureView baseColorTexture, metallicRoughnessTexture, normalTexture, emissionTexture, specularTexture,
       specularColorTexture, transmissionTexture;
+  std::shared_ptr<const CompiledExtension> extension;  ///< null: none
+  /// KHR_materials_volume: extinction inside a solid, per metre; see absorption().
+  Vec3 absorption{0};
 
   /// Seen from behind: a closed or thin transmitter and double-sided surfaces scatter, others are black.
   bool scattersBehind() const { return doubleSided || transmission > 0; }
   bool emits() const { return !unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0); }
 };
+
+/// -ln(attenuationColor) / attenuationDistance by channel: 0 without attenuation, infinite for a channel of
+/// 0.
+Vec3 absorption(const core::Material& material);
+/// exp(-absorption * distance) by channel; 1 where either is 0, whatever the other. distance >= 0 or
+/// infinite.
+Vec3 beerLambert(const Vec3& absorption, float distance);
 
 CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material& material,
                                  const TextureStore& textures);
@@ -51,6 +64,7 @@ struct MaterialPoint {
   float transmission = 0;
   float ior = 1.5f;
   float diffuseFactor = 1;
+  std::optional<ExtensionPoint> extension;  ///< filled by makeSurface
 };
 
 }  // namespace saccade::raytrace

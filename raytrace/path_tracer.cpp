@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/math/random.h"
 #include "raytrace/lights.h"
+#include "raytrace/medium.h"
 #include "raytrace/parallel_rows.h"
 #include "raytrace/surface.h"
 
@@ -16,8 +17,6 @@ namespace {
 constexpr int kRouletteBounces = 3;  ///< scattered so often before roulette begins
 constexpr float kLargestSurvival = 0.95f;
 constexpr int kMaxLayers = 256;  ///< blended layers that one path passes
-
-float largest(const Vec3& c) { return std::max({c.x, c.y, c.z}); }
 
 float powerHeuristic(float a, float b) {
   const float a2 = a * a, b2 = b * b;
@@ -36,8 +35,7 @@ class Scatterer {
   }
   /// Light sampling can contribute.
   bool takesLight() const {
-    return diffuseOnly_ ? largest(albedo_) > 0
-                        : full_.hasDiffuse() || (full_.hasSpecular() && !full_.delta());
+    return diffuseOnly_ ? largest(albedo_) > 0 : full_.hasDiffuse() || full_.roughLobes() != 0;
   }
   Vec3 eval(const Vec3& wi) const {
     if (!diffuseOnly_) return full_.eval(wi, kLobeAll);
@@ -82,6 +80,7 @@ class Path {
       const Vec3 direction = ray.direction;
       travelled_ += hit.t;
       const Surface surface = makeSurface(world_, hit, direction);
+      if (world_.attenuates()) throughput_ *= inside_.transmittance(world_, hit.object, surface.front, hit.t);
       if (surface.point.coverage < 1 && !(sampler_.next1D() < surface.point.coverage)) {
         if (++layers > kMaxLayers) break;
         ray = surface.leave(direction);
@@ -120,6 +119,7 @@ class Path {
     density_ = lights && !s->delta ? s->pdf : 0;
     travelled_ = 0;
     ray = surface.leave(s->direction);
+    if (world_.attenuates()) inside_.leave(surface, s->direction);
     return largest(throughput_) > 0;
   }
 
@@ -132,7 +132,15 @@ class Path {
     if (!(largest(f) > 0)) return Vec3(0);
     const float mis = light.delta ? 1 : powerHeuristic(light.pdf, material.pdf(light.direction));
     const float free = world_.transmittance(shadowRay(surface, light), counters_);
-    return f * light.radiance * (mis * free / light.pdf);
+    return f * light.radiance * (mis * free / light.pdf) * mediumTowards(surface, light);
+  }
+
+  /// What the solid around the light's way leaves of it: lamps inside glass.
+  Vec3 mediumTowards(const Surface& surface, const LightSample& light) const {
+    if (!world_.attenuates()) return Vec3(1);
+    Inside inside = inside_;
+    inside.leave(surface, light.direction);
+    return inside.transmittance(world_, light.distance);
   }
 
   bool survives() {
@@ -148,6 +156,7 @@ class Path {
   RayCounters& counters_;
   Vec3 sum_{0};
   Vec3 throughput_{1};
+  Inside inside_;        ///< kept only where a solid attenuates
   LightChoice choice_;   ///< at the last rough scattering
   float density_ = 0;    ///< of the present ray, 0 = the lights were not sampled where it began
   float travelled_ = 0;  ///< since then, through blended layers

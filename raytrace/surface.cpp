@@ -75,17 +75,22 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
   return p;
 }
 
-/// Tangent-space normal, world; the interpolated one where the mesh has no tangents.
-Vec3 mappedNormal(const World& world, const Hit& hit, const TriangleRecord& record, const CompiledMaterial& m,
-                  const Vec3& ns, const Vec2& uv0) {
+/// Tangent (xyz, world) and handedness; 0 where the mesh has none.
+core::Vec4 tangentAt(const World& world, const Hit& hit, const TriangleRecord& record) {
   const core::Mesh& mesh = world.meshOf(record.object);
-  if (mesh.tangents.empty()) return ns;
-  const core::Vec4 tangent = interpolateMesh(world, hit, record.object, mesh.tangents);
-  const core::Vec4 texel = m.normalTexture.sample(textureUv(world, hit, record, uv0, m.normalTexture));
-  const Vec3 local = (Vec3(texel) * 2.0f - 1.0f) * Vec3(m.normalScale, m.normalScale, 1);
-  const Vec3 t = Vec3(tangent);
-  const Vec3 b = glm::cross(ns, t) * (tangent.w < 0 ? -1.0f : 1.0f);
-  const Vec3 n = t * local.x + b * local.y + ns * local.z;
+  return mesh.tangents.empty() ? core::Vec4(0) : interpolateMesh(world, hit, record.object, mesh.tangents);
+}
+
+/// Of the tangent plane under the front's normal.
+Vec3 bitangent(const Vec3& ns, const core::Vec4& tangent) {
+  return glm::cross(ns, Vec3(tangent)) * (tangent.w < 0 ? -1.0f : 1.0f);
+}
+
+/// Tangent-space normal, world; the interpolated one where the mesh has no tangents.
+Vec3 mappedNormal(const core::Vec4& texel, float scale, const core::Vec4& tangent, const Vec3& ns) {
+  if (tangent == core::Vec4(0)) return ns;
+  const Vec3 local = (Vec3(texel) * 2.0f - 1.0f) * Vec3(scale, scale, 1);
+  const Vec3 n = Vec3(tangent) * local.x + bitangent(ns, tangent) * local.y + ns * local.z;
   const float length = glm::length(n);
   return length > 0 && std::isfinite(length) ? n / length : ns;
 }
@@ -101,6 +106,22 @@ Vec3 bendNormal(const Vec3& ng, Vec3 ns, const Vec3& toEye) {
   const Vec3 bent = toEye + lifted;
   const float length = glm::length(bent);
   return length > 1e-4f ? bent / length : ng;
+}
+
+/// The layers' parameters, with the coat's normal still on the triangle's front. `ns`: before its own map.
+ExtensionPoint extensionAt(const World& world, const Hit& hit, const TriangleRecord& record,
+                           const CompiledExtension& e, const Vec3& ns, const Vec2& uv0) {
+  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, record, uv0, t)); };
+  ExtensionPoint p = evaluateExtension(e, texel);
+  p.coatNormal = ns;
+  const bool directed = p.anisotropy > 0 || p.ward;
+  if (!directed && !e.clearcoatNormalTexture) return p;
+  const core::Vec4 tangent = tangentAt(world, hit, record);
+  if (directed) p.tangent = Vec3(tangent) * p.direction.x + bitangent(ns, tangent) * p.direction.y;
+  if (e.clearcoatNormalTexture) {
+    p.coatNormal = mappedNormal(texel(e.clearcoatNormalTexture), e.clearcoatNormalScale, tangent, ns);
+  }
+  return p;
 }
 
 Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
@@ -126,13 +147,23 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
 
   s.ng = unitOr(hit.ng, -direction);
   s.ns = unitOr(interpolate(shape.normal, hit.u, hit.v), s.ng);
-  if (s.material->normalTexture) s.ns = mappedNormal(world, hit, record, *s.material, s.ns, s.uv0);
+  if (const CompiledExtension* e = s.material->extension.get()) {
+    s.point.extension = extensionAt(world, hit, record, *e, s.ns, s.uv0);
+  }
+  if (const TextureView& map = s.material->normalTexture) {
+    s.ns = mappedNormal(map.sample(textureUv(world, hit, record, s.uv0, map)), s.material->normalScale,
+                        tangentAt(world, hit, record), s.ns);
+  }
   s.front = glm::dot(s.ng, direction) <= 0;
   if (!s.front) {
     s.ng = -s.ng;
     s.ns = -s.ns;
   }
   s.ns = bendNormal(s.ng, s.ns, -direction);
+  if (s.point.extension) {
+    Vec3& n = s.point.extension->coatNormal;
+    n = bendNormal(s.ng, s.front ? n : -n, -direction);
+  }
   return s;
 }
 

@@ -200,6 +200,7 @@ struct World::Embree {
 World::World(const core::Scene& scene, const core::Plan& plan)
     : scene_(scene),
       recursionDepth_(plan.recursionDepth),
+      attenuates_(plan.attenuation),
       textures_(scene),
       embree_(std::make_unique<Embree>()) {
   materials_.reserve(scene.materials.size());
@@ -223,9 +224,9 @@ void World::buildRecords() {
     const core::Object& object = scene_.objects[o];
     const core::Mesh& mesh = scene_.meshOf(object);
     firstTriangle_.push_back(static_cast<std::uint32_t>(records_.size()));
-    flags_.push_back(static_cast<std::uint8_t>((object.closed ? kClosed : 0) |
-                                               (object.id == 0 ? kDiffuse : 0) |
-                                               (mesh.colors.empty() ? 0 : kColors)));
+    flags_.push_back(static_cast<std::uint8_t>(
+        (object.closed && !scene_.materials[object.material].thinWalled ? kClosed : 0) |
+        (object.id == 0 ? kDiffuse : 0) | (mesh.colors.empty() ? 0 : kColors)));
     if (object.id > 0) objectOfId_[object.id] = o;
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
       TriangleRecord r;

@@ -101,7 +101,11 @@ class World {
   const CompiledMaterial& materialOf(std::uint32_t object) const { return materials_[materialOf_[object]]; }
   std::size_t triangleCount() const { return records_.size(); }
   std::uint32_t firstTriangle(std::uint32_t object) const { return firstTriangle_[object]; }
+  /// Transmission, if any, is that of a solid: watertight, and not thin-walled by KHR_materials_volume.
   bool closed(std::uint32_t object) const { return flags_[object] & kClosed; }
+  bool solid(std::uint32_t object) const { return closed(object) && materialOf(object).transmission > 0; }
+  /// Some solid tints light (core::Plan): paths keep track of the solids they are in.
+  bool attenuates() const { return attenuates_; }
   bool hasColors(std::uint32_t object) const { return flags_[object] & kColors; }
   /// ID mask value (1..idCount) to object index; throws core::Error for an unknown id.
   std::uint32_t objectOfId(std::uint32_t id) const;
@@ -118,6 +122,7 @@ class World {
 
   const core::Scene& scene_;
   int recursionDepth_ = 0;
+  bool attenuates_ = false;
   TextureStore textures_;
   std::vector<CompiledMaterial> materials_;
   std::vector<std::uint32_t> materialOf_;  ///< by object

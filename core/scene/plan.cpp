@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/scene/sheen.h"
 #include "core/scene/texture_mean.h"
 
 namespace saccade::core {
@@ -43,9 +44,18 @@ double areaOf(const Mesh& mesh) {
 /// What the objects of a scene amount to.
 struct Census {
   std::size_t nonDiffuse = 0, rough = 0, transmitting = 0, alpha = 0, normalMapped = 0, doubleSided = 0,
-              emitting = 0;
+              emitting = 0, attenuating = 0, coated = 0, anisotropic = 0, sheen = 0, ward = 0;
   double area = 0, leftOut = 0, diffuseArea = 0;
 };
+
+void countLayers(const Material& m, Census& c) {
+  if (m.unlit) return;
+  c.ward += m.ward.has_value();
+  if (m.ward) return;
+  c.coated += m.clearcoat > 0;
+  c.anisotropic += m.anisotropy > 0;
+  c.sheen += m.sheenColor != Vec3(0);
+}
 
 Census count(const Scene& scene) {
   Census c;
@@ -59,6 +69,8 @@ Census count(const Scene& scene) {
     c.alpha += m.alphaMode != AlphaMode::opaque;
     c.emitting += m.emits();
     c.normalMapped += static_cast<bool>(m.normalTexture);
+    c.attenuating += o.closed && m.attenuates();
+    countLayers(m, c);
     c.doubleSided += m.doubleSided && !m.unlit && mean.metallic < 1 && mean.transmission < 1;
     if (o.id == 0) {
       c.diffuseArea += area;
@@ -67,7 +79,8 @@ Census count(const Scene& scene) {
     }
     ++c.nonDiffuse;
     const bool hasLobe = mean.metallic > 0 || luminance(mean.dielectricAlbedo) > 0;
-    c.rough += hasLobe && mean.roughness > kMirrorRoughness;
+    c.rough += (hasLobe && mean.roughness > kMirrorRoughness) || m.ward || mean.over.sheen > 0 ||
+               (mean.over.coat > 0 && mean.over.coatRoughness > kMirrorRoughness);
     c.transmitting += mean.transmission > 0;
   }
   return c;
@@ -93,6 +106,13 @@ void describe(const Scene& scene, const Census& c, Plan& plan) {
        "no rough lobe on a non-diffuse object");
   line("refraction", plan.refraction, counted(c.transmitting, "object") + " transmit light",
        "nothing transmits light");
+  line("attenuation", plan.attenuation, counted(c.attenuating, "solid") + " tint the light that crosses",
+       "no solid tints light");
+  line("clearcoat", c.coated > 0, counted(c.coated, "object") + " under a coat", "no material has a coat");
+  line("anisotropy", c.anisotropic > 0, counted(c.anisotropic, "object") + " with brushed highlights",
+       "no anisotropic material");
+  line("sheen", c.sheen > 0, counted(c.sheen, "object") + " with sheen", "no material has sheen");
+  line("Ward", c.ward > 0, counted(c.ward, "object") + " with Ward's lobe", "no material has Ward's lobe");
   line("alpha test", plan.alphaTest, counted(c.alpha, "object") + " with alpha mask or blend",
        "no alpha mask or blend");
   line("normal maps", plan.normalMaps, counted(c.normalMapped, "object") + " with a normal map",
@@ -127,6 +147,27 @@ void describe(const Scene& scene, const Census& c, Plan& plan) {
   for (const char* stage : {"medium", "volume", "motion"}) line(stage, false, "", "not in this scene");
 }
 
+/// Of S and G.
+float baseAlbedo(const MaterialMeans& m) {
+  const float dielectric = luminance(m.dielectricAlbedo);
+  const float through = (1 - dielectric) * m.transmission * luminance(m.baseColor);
+  return m.metallic * luminance(m.metallicAlbedo) + (1 - m.metallic) * (dielectric + through);
+}
+
+/// With sheen over the base, and a coat over both.
+float underLayers(const MaterialMeans& m, float albedo) {
+  if (m.over.sheen > 0) {
+    const float sheen = sheenMeanAlbedo(m.over.sheenRoughness);
+    albedo = luminance(m.sheenColor) * sheen + (1 - m.over.sheen * sheen) * albedo;
+  }
+  if (m.over.coat > 0) {
+    const AlbedoPair pair = meanAlbedo(m.over.coatRoughness);
+    const float coat = m.over.coat * (kCoatF0 * pair.scale + pair.bias);
+    albedo = coat + (1 - coat) * albedo;
+  }
+  return albedo;
+}
+
 }  // namespace
 
 float nonDiffuseAlbedo(const Scene& scene, const Material& material) {
@@ -134,9 +175,7 @@ float nonDiffuseAlbedo(const Scene& scene, const Material& material) {
   const float coverage = material.alphaMode == AlphaMode::blend ? std::clamp(m.alpha, 0.0f, 1.0f) : 1.0f;
   float lobes = 0;
   if (!material.unlit) {
-    const float dielectric = luminance(m.dielectricAlbedo);
-    const float through = (1 - dielectric) * m.transmission * luminance(m.baseColor);
-    lobes = m.metallic * luminance(m.metallicAlbedo) + (1 - m.metallic) * (dielectric + through);
+    lobes = material.ward ? luminance(material.ward->specular) : underLayers(m, baseAlbedo(m));
   }
   return std::clamp(coverage * lobes + (1 - coverage), 0.0f, 1.0f);
 }
@@ -147,6 +186,7 @@ Plan makePlan(const Scene& scene) {
   plan.corrections = c.nonDiffuse > 0;
   plan.glossy = c.rough > 0;
   plan.refraction = c.transmitting > 0;
+  plan.attenuation = c.attenuating > 0;
   plan.alphaTest = c.alpha > 0;
   plan.normalMaps = c.normalMapped > 0;
   plan.doubleSided = c.doubleSided > 0;

@@ -18,6 +18,7 @@ struct Plan {
   bool corrections = false;  ///< some object is non-diffuse
   bool glossy = false;       ///< a rough specular lobe occurs: distributed reflection, light sampling
   bool refraction = false;   ///< some object transmits
+  bool attenuation = false;  ///< some solid tints the light that crosses it
   bool alphaTest = false;    ///< mask or blend occurs
   bool normalMaps = false;
   bool doubleSided = false;  ///< maps need a back layer

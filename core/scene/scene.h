@@ -101,6 +101,13 @@ struct Material {
     return normalTexture || clearcoatNormalTexture || anisotropy > 0 ||
            (ward && ward->alphaX != ward->alphaY);
   }
+  /// Light that crosses a closed object of it is tinted by the way it goes (KHR_materials_volume).
+  bool attenuates() const {
+    return !unlit && transmission > 0 && !thinWalled && attenuationDistance < kInfinity &&
+           attenuationColor != Vec3(1);
+  }
+  /// A closed object of it splits light into colours (KHR_materials_dispersion).
+  bool disperses() const { return !unlit && transmission > 0 && !thinWalled && dispersion > 0 && ior > 1; }
   bool emits() const { return !unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0); }
 };
 

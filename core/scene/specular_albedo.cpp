@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/scene/sheen.h"
 #include "core/scene/texture_mean.h"
 
 namespace saccade::core {
@@ -149,9 +150,41 @@ float dielectricF90(const Vec3& f0, float specular) {
   return std::min(unit(specular), kF90OverF0 * std::max({f0.x, f0.y, f0.z, 0.0f}));
 }
 
+float coatTransmission(float coat, float coatRoughness, float cosine) {
+  const AlbedoPair pair = directionalAlbedo(cosine, coatRoughness);
+  return 1 - coat * (kCoatF0 * pair.scale + pair.bias);
+}
+
+float sheenTransmission(float sheen, float sheenRoughness, float cosine) {
+  return 1 - sheen * sheenAlbedo(cosine, sheenRoughness);
+}
+
+Vec3 transmission(const OverLambert& over, float cosine, float coatCosine) {
+  Vec3 t = Vec3(1) - lobeAlbedo(directionalAlbedo(cosine, over.roughness), over.f0, over.f90);
+  if (over.sheen > 0) t *= sheenTransmission(over.sheen, over.sheenRoughness, cosine);
+  if (over.coat > 0) t *= coatTransmission(over.coat, over.coatRoughness, coatCosine);
+  return t;
+}
+
+Vec3 meanTransmission(const OverLambert& over) {
+  // Gauss-Legendre over t in [0, 1] with cosine = t^2: 2 c dc = 4 t^3 dt.
+  constexpr float kNode[] = {0.0198550718f, 0.1016667613f, 0.2372337950f, 0.4082826788f,
+                             0.5917173212f, 0.7627662050f, 0.8983332387f, 0.9801449282f};
+  constexpr float kWeight[] = {0.0506142681f, 0.1111905172f, 0.1568533229f, 0.1813418917f,
+                               0.1813418917f, 0.1568533229f, 0.1111905172f, 0.0506142681f};
+  Vec3 sum(0);
+  for (int i = 0; i < 8; ++i) {
+    const float t = kNode[i], cosine = t * t;
+    sum += transmission(over, cosine, cosine) * (4 * t * cosine * kWeight[i]);
+  }
+  return sum;
+}
+
 float baseDiffuseFactor(const Scene& scene, const Material& material) {
-  if (material.unlit) return 1;
+  if (material.unlit || material.ward) return 1;
   const MaterialMeans means = materialMeans(scene, material);
+  if (means.over.sheen > 0 || means.over.coat > 0 || material.anisotropy > 0)
+    return luminance(meanTransmission(means.over));
   return 1 - luminance(means.dielectricAlbedo);
 }
 

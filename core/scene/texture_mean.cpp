@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/image_io.h"
-#include "core/scene/specular_albedo.h"
 
 namespace saccade::core {
 namespace {
@@ -67,6 +66,16 @@ MaterialMeans materialMeans(const Scene& scene, const Material& material) {
   const AlbedoPair mean = meanAlbedo(m.roughness);
   m.dielectricAlbedo = f0 * mean.scale + dielectricF90(f0, material.specular * specularWeight) * mean.bias;
   m.metallicAlbedo = m.baseColor * mean.scale + mean.bias;
+
+  m.sheenColor = material.sheenColor * Vec3(slotMean(scene, material.sheenColorTexture));
+  m.over.f0 = f0;
+  m.over.f90 = dielectricF90(f0, material.specular * specularWeight);
+  const float anisotropy = material.anisotropy * slotMean(scene, material.anisotropyTexture).z;
+  m.over.roughness = roughnessOverLambert(m.roughness, anisotropy);
+  m.over.sheen = std::max({m.sheenColor.x, m.sheenColor.y, m.sheenColor.z});
+  m.over.sheenRoughness = material.sheenRoughness * slotMean(scene, material.sheenRoughnessTexture).w;
+  m.over.coat = material.clearcoat * slotMean(scene, material.clearcoatTexture).x;
+  m.over.coatRoughness = material.clearcoatRoughness * slotMean(scene, material.clearcoatRoughnessTexture).y;
   return m;
 }
 

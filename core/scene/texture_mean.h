@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/scene/scene.h"
+#include "core/scene/specular_albedo.h"
 
 namespace saccade::core {
 
@@ -19,6 +20,8 @@ struct MaterialMeans {
   float transmission = 0;
   Vec3 dielectricAlbedo{0};  ///< mean albedo of the dielectric specular lobe
   Vec3 metallicAlbedo{0};    ///< mean albedo of the lobe with F0 = baseColor
+  OverLambert over;          ///< the dielectric lobe, sheen and coat
+  Vec3 sheenColor{0};
 };
 MaterialMeans materialMeans(const Scene& scene, const Material& material);
 

@@ -7,6 +7,7 @@
 #include "raytrace/bake/duplicates.h"
 #include "raytrace/bsdf.h"
 #include "raytrace/lights.h"
+#include "raytrace/medium.h"
 #include "raytrace/surface.h"
 
 namespace saccade::raytrace {
@@ -35,11 +36,13 @@ class Tracer {
     Vec3 weight = start.flux * perWatt_;
     Ray ray{offsetOrigin(start.origin, start.normal, start.direction, start.offset), start.direction, 0,
             core::kInfinity};
+    Inside inside;
     bool direct = true;  // has met nothing but see-through surfaces: what shadow rays account for
     for (int event = 0; event < kMaxEvents && core::luminance(weight) > 0; ++event) {
       Hit hit;
       if (!world_.intersect(ray, hit, counters_)) return;
       const Surface surface = makeSurface(world_, hit, ray.direction);
+      if (world_.attenuates()) weight *= inside.transmittance(world_, hit.object, surface.front, hit.t);
       if (!direct) deposit(surface, hit, ray.direction, weight);
       const float uCoverage = random.next1D();
       if (uCoverage >= surface.point.coverage) {
@@ -48,6 +51,7 @@ class Tracer {
       }
       direct = false;
       if (!surface.scatters() || !scatter(surface, random, ray, weight)) return;
+      if (world_.attenuates()) inside.leave(surface, ray.direction);
     }
   }
 
