@@ -43,6 +43,13 @@ json extensionsOf(const MaterialDesc& m, float emissiveStrength) {
   return extensions;
 }
 
+json extrasOf(const core::WardLobe& ward) {
+  const json lobe = {{"diffuse", tidyArray(ward.diffuse)},
+                     {"specular", tidyArray(ward.specular)},
+                     {"alpha", {tidy(ward.alphaX), tidy(ward.alphaY)}}};
+  return {{"saccade", {{"ward", lobe}}}};
+}
+
 void pad(std::vector<std::uint8_t>& bytes, std::uint8_t with) {
   while (bytes.size() % 4 != 0) bytes.push_back(with);
 }
@@ -86,9 +93,12 @@ int GlbWriter::addMaterial(const MaterialDesc& m) {
   const json extensions = extensionsOf(m, strength);
   for (const auto& item : extensions.items()) extensionsUsed_[item.key()] = true;
   if (!extensions.empty()) material["extensions"] = extensions;
+  if (m.ward) material["extras"] = extrasOf(*m.ward);
   root_["materials"].push_back(material);
-  isBumpy_.push_back(m.normalTexture >= 0);
-  isTextured_.push_back(std::max({m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture}) >= 0);
+  const bool anisotropic = m.ward && m.ward->alphaX != m.ward->alphaY;
+  isBumpy_.push_back(m.normalTexture >= 0 || anisotropic);
+  isTextured_.push_back(anisotropic ||
+                        std::max({m.baseColorTexture, m.metallicRoughnessTexture, m.normalTexture}) >= 0);
   return static_cast<int>(root_["materials"].size()) - 1;
 }
 

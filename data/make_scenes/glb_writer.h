@@ -5,12 +5,14 @@
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"
+#include "core/scene/scene.h"
 #include "data/make_scenes/mesh_data.h"
 
 namespace saccade::data {
@@ -30,6 +32,7 @@ struct MaterialDesc {
   float ior = 1.5f;
   float specular = 1;
   bool doubleSided = false;
+  std::optional<core::WardLobe> ward;  ///< in `extras`; anisotropic: uvs and tangents are kept
 };
 
 /// Where a node stands: translation, then rotation, then scale, as in glTF.

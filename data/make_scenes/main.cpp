@@ -30,9 +30,11 @@ int main(int argc, char** argv) {
     saccade::core::writeFileAtomically(out / "scenes" / "cornell.glb", data::makeCornell().bytes());
     saccade::core::writeFileAtomically(out / "scenes" / "table.glb", data::makeTable().bytes());
     saccade::core::writeFileAtomically(out / "scenes" / "gallery.glb", data::makeGallery().bytes());
+    saccade::core::writeFileAtomically(out / "scenes" / "ward.glb", data::makeWard().bytes());
     data::writePath(out / "paths" / "cornell.json", data::cornellPath());
     data::writePath(out / "paths" / "table.json", data::tablePath());
     data::writePath(out / "paths" / "gallery.json", data::galleryPath());
+    data::writePath(out / "paths" / "ward.json", data::wardPath());
   } catch (const saccade::core::UsageError& error) {
     std::cerr << "make_scenes: error: " << error.what() << '\n';
     return 2;

@@ -1,5 +1,7 @@
 #include "data/make_scenes/materials.h"
 
+#include <cmath>
+
 namespace saccade::data {
 
 MaterialDesc lambert(const std::string& name, const Vec3& color, int colorTexture) {
@@ -37,6 +39,17 @@ MaterialDesc glazed(const std::string& name, const Vec3& color, int colorTexture
   m.baseColorTexture = colorTexture;
   m.ior = ior;
   m.roughness = roughness;
+  return m;
+}
+
+MaterialDesc ward(const std::string& name, const Vec3& diffuse, const Vec3& specular, const Vec2& alpha) {
+  const bool metallic = core::luminance(specular) > core::luminance(diffuse);
+  MaterialDesc m;
+  m.name = name;
+  m.baseColor = metallic ? specular : diffuse;
+  m.metallic = metallic ? 1 : 0;
+  m.roughness = std::pow(alpha.x * alpha.y, 0.25f);  // GGX's alpha is about Ward's
+  m.ward = core::WardLobe{diffuse, specular, alpha.x, alpha.y};
   return m;
 }
 

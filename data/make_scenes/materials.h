@@ -15,6 +15,9 @@ MaterialDesc glass(const std::string& name, const Vec3& tint = Vec3(1));
 /// Colour under a strong clear coat: glazed ceramic, lacquer, polished stone. `ior` well above 1.5 lifts its
 /// reflection over the threshold of non-diffuse.
 MaterialDesc glazed(const std::string& name, const Vec3& color, int colorTexture, float ior, float roughness);
+/// Ward's lobe over Lambert (core::WardLobe), which glTF lacks: it goes into `extras`; programs that do not
+/// read it see a metal or a plastic of about the same gloss. `alpha` x is along the surface's u.
+MaterialDesc ward(const std::string& name, const Vec3& diffuse, const Vec3& specular, const Vec2& alpha);
 MaterialDesc emitter(const std::string& name, const Vec3& radiance);
 
 inline const Vec3 kGold{1.00f, 0.77f, 0.34f};

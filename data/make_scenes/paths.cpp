@@ -72,6 +72,19 @@ CameraPath galleryPath() {
   });
 }
 
+CameraPath wardPath() {
+  return sampled(8, [](float t) {
+    const float angle = glm::radians(38 * std::sin(2 * core::kPi * t)),
+                radius = 1.75f - 0.45f * std::sin(4 * core::kPi * t);
+    return core::Camera{
+        "",
+        {radius * std::sin(angle), 1.3f + 0.12f * std::cos(2 * core::kPi * t), radius * std::cos(angle)},
+        {0, 0.92f, -0.1f},
+        {0, 1, 0},
+        46};
+  });
+}
+
 void writePath(const std::filesystem::path& file, const CameraPath& path) {
   const auto tidy = [](float x) { return std::round(static_cast<double>(x) * 1e4) / 1e4; };
   const auto triple = [&](const Vec3& v) { return nlohmann::ordered_json{tidy(v.x), tidy(v.y), tidy(v.z)}; };

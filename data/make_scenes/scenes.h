@@ -12,6 +12,7 @@ namespace saccade::data {
 GlbWriter makeCornell();
 GlbWriter makeTable();
 GlbWriter makeGallery();
+GlbWriter makeWard();
 /// The hall with a tribune of `objects` small non-diffuse things, each visible from the camera.
 /// Throws core::UsageError outside [1, 4000].
 GlbWriter makeTribune(int objects);
@@ -26,6 +27,7 @@ using CameraPath = std::vector<PathKey>;
 CameraPath cornellPath();
 CameraPath tablePath();
 CameraPath galleryPath();
+CameraPath wardPath();
 /// JSON: [{"t", "eye", "at", "up", "fov"}, ...], seconds, metres, degrees.
 void writePath(const std::filesystem::path& file, const CameraPath& path);
 
