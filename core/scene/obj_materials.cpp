@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <utility>
 
 #include "core/image_io.h"
 #include "core/scene/confined_file.h"
@@ -15,6 +17,8 @@ constexpr float kStandardIor = 1.5f, kLargestIor = 10;
 constexpr float kBlackKd = 0.05f, kMirrorKs = 0.3f;
 /// Phong exponents from here on are meant as polished.
 constexpr float kPolishedNs = 1000;
+/// MTL's sheen names no roughness; Blender's default.
+constexpr float kSheenRoughness = 0.5f;
 
 Vec3 rgb(const tinyobj::real_t (&c)[3]) {
   Vec3 out;
@@ -69,6 +73,54 @@ void opaque(const tinyobj::material_t& from, Material& m) {
   m.roughness = roughnessOf(static_cast<float>(from.shininess));
 }
 
+/// A number of the PBR extension: those out of range are taken to its end, what is no number to 0.
+float unit(tinyobj::real_t x) { return x > 0 ? std::min(static_cast<float>(x), 1.0f) : 0.0f; }
+
+/// The material uses the PBR extension of MTL. A property that is absent reads as 0, so a polished one of
+/// nothing but `Pr 0` is told by its Ns alone, as exporters write it beside.
+bool isPhysical(const tinyobj::material_t& from) {
+  return from.roughness > 0 || from.metallic > 0 || from.sheen > 0 || from.clearcoat_thickness > 0 ||
+         from.anisotropy > 0 || !from.roughness_texname.empty() || !from.metallic_texname.empty();
+}
+
+void physical(const tinyobj::material_t& from, Material& m) {
+  if (isGlass(from.illum)) {
+    glass(from, m);
+  } else {
+    m.baseColor = glm::min(rgb(from.diffuse), Vec3(1));
+    m.metallic = unit(from.metallic);
+    if (from.ior > 1) m.ior = std::min(static_cast<float>(from.ior), kLargestIor);
+  }
+  m.roughness = unit(from.roughness);
+  m.clearcoat = unit(from.clearcoat_thickness);
+  m.clearcoatRoughness = unit(from.clearcoat_roughness);
+  m.anisotropy = unit(from.anisotropy);
+  m.anisotropyRotation = 2 * kPi * unit(from.anisotropy_rotation);
+  m.sheenColor = Vec3(unit(from.sheen));
+  m.sheenRoughness = kSheenRoughness;
+}
+
+/// MTL's -s and -o: coordinates times s plus o, where v runs up; ours runs down.
+void place(const tinyobj::texture_option_t& options, TextureSlot& slot) {
+  const auto finite = [](tinyobj::real_t x, float otherwise) {
+    return std::isfinite(x) ? static_cast<float>(x) : otherwise;
+  };
+  slot.scale = {finite(options.scale[0], 1), finite(options.scale[1], 1)};
+  slot.offset = {finite(options.origin_offset[0], 0), 1 - slot.scale.y - finite(options.origin_offset[1], 0)};
+}
+
+/// The grey of one image as channel G, that of another as B; an empty one counts as white. The first one that
+/// is there gives the size.
+ImageRgba8 packed(const ImageRgba8& green, const ImageRgba8& blue) {
+  ImageRgba8 out = green.empty() ? blue : green;
+  const auto grey = [&](const ImageRgba8& from, int x, int y) -> std::uint8_t {
+    return from.empty() ? 255 : from.at(x * from.width() / out.width(), y * from.height() / out.height()).r;
+  };
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x) out.at(x, y) = {255, grey(green, x, y), grey(blue, x, y), 255};
+  return out;
+}
+
 class Converter {
  public:
   Converter(const std::filesystem::path& folder, Scene& scene, LoadBudget& budget)
@@ -79,7 +131,9 @@ class Converter {
     m.name = from.name;
     m.metallic = 0;
     m.doubleSided = true;  // OBJ has no notion of a back side
-    if (isGlass(from.illum)) {
+    if (isPhysical(from)) {
+      physical(from, m);
+    } else if (isGlass(from.illum)) {
       glass(from, m);
     } else {
       opaque(from, m);
@@ -91,33 +145,73 @@ class Converter {
       m.alphaMode = AlphaMode::blend;
       m.alpha = std::clamp(static_cast<float>(from.dissolve), 0.0f, 1.0f);
     }
-    if (!isGlass(from.illum)) m.baseColorTexture = slot(from.diffuse_texname, true);
+    if (!isGlass(from.illum)) {
+      m.baseColorTexture = slot(from.diffuse_texname, from.diffuse_texopt, true);
+      metallicRoughness(from, m);
+    }
     if (m.baseColorTexture && from.alpha_texname == from.diffuse_texname) m.alphaMode = AlphaMode::mask;
-    m.emissionTexture = slot(from.emissive_texname, true);
-    m.normalTexture = slot(from.normal_texname, false);
+    m.emissionTexture = slot(from.emissive_texname, from.emissive_texopt, true);
+    m.normalTexture = slot(from.normal_texname, from.normal_texopt, false);
+    if (std::isfinite(from.normal_texopt.bump_multiplier))
+      m.normalScale = static_cast<float>(from.normal_texopt.bump_multiplier);
     return m;
   }
 
  private:
-  TextureSlot slot(std::string name, bool srgb) {
+  TextureSlot slot(const std::string& name, const tinyobj::texture_option_t& options, bool srgb) {
+    if (name.empty()) return {};
+    TextureSlot slot;
+    const auto [at, isNew] = made_.try_emplace({name, srgb, options.clamp}, -1);
+    if (isNew) at->second = add(name, image(name), srgb, options.clamp);
+    slot.texture = at->second;
+    if (slot) place(options, slot);
+    return slot;
+  }
+
+  /// map_Pr and map_Pm as one texture, placed as the first of them that is named; each takes the place of its
+  /// number.
+  void metallicRoughness(const tinyobj::material_t& from, Material& m) {
+    const std::string &rough = from.roughness_texname, &metal = from.metallic_texname;
+    const tinyobj::texture_option_t& options = rough.empty() ? from.metallic_texopt : from.roughness_texopt;
+    const auto [at, isNew] = packed_.try_emplace({rough, metal, options.clamp});
+    if (isNew) at->second = pack(rough, metal, options.clamp);
+    if (at->second.texture < 0) return;
+    m.metallicRoughnessTexture.texture = at->second.texture;
+    place(options, m.metallicRoughnessTexture);
+    if (at->second.rough) m.roughness = 1;
+    if (at->second.metal) m.metallic = 1;
+  }
+
+  struct Packed {
+    int texture = -1;
+    bool rough = false, metal = false;  ///< which images were there
+  };
+  Packed pack(const std::string& rough, const std::string& metal, bool clamp) {
+    const ImageRgba8 green = image(rough), blue = image(metal);
+    budget_.charge(std::max(green.pixels().size(), blue.pixels().size()), sizeof(Rgba8), rough + metal);
+    return {add(rough + " " + metal, packed(green, blue), false, clamp), !green.empty(), !blue.empty()};
+  }
+
+  /// Its index; -1 for an empty image.
+  int add(const std::string& name, ImageRgba8 image, bool srgb, bool clamp) {
+    if (image.empty()) return -1;
+    Texture texture;
+    texture.name = name;
+    texture.image = std::move(image);
+    texture.srgb = srgb;
+    if (clamp) texture.wrapS = texture.wrapT = Wrap::clamp;
+    scene_.textures.push_back(std::move(texture));
+    return static_cast<int>(scene_.textures.size()) - 1;
+  }
+
+  /// Empty, with a warning, where there is no such file.
+  ImageRgba8 image(std::string name) {
     if (name.empty()) return {};
     std::replace(name.begin(), name.end(), '\\', '/');
-    const auto known = made_.find({name, srgb});
-    if (known != made_.end()) return {known->second, 0};
-    int index = -1;
     const std::string who = std::string("texture ").append(name);
-    if (const auto file = confinedFileIfThere(folder_, name, who)) {
-      Texture texture;
-      texture.name = name;
-      texture.image = readTexture(*file, who);
-      texture.srgb = srgb;
-      index = static_cast<int>(scene_.textures.size());
-      scene_.textures.push_back(std::move(texture));
-    } else {
-      scene_.warnings.push_back(who + " does not exist beside the scene and is left out");
-    }
-    made_[{name, srgb}] = index;
-    return {index, 0};
+    if (const auto file = confinedFileIfThere(folder_, name, who)) return readTexture(*file, who);
+    scene_.warnings.push_back(who + " does not exist beside the scene and is left out");
+    return {};
   }
 
   ImageRgba8 readTexture(const std::filesystem::path& file, const std::string& who) {
@@ -130,7 +224,8 @@ class Converter {
   const std::filesystem::path& folder_;
   Scene& scene_;
   LoadBudget& budget_;
-  std::map<std::pair<std::string, bool>, int> made_;
+  std::map<std::tuple<std::string, bool, bool>, int> made_;              ///< by name, sRGB, clamped
+  std::map<std::tuple<std::string, std::string, bool>, Packed> packed_;  ///< by names, clamped
 };
 
 }  // namespace

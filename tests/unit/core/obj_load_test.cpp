@@ -6,6 +6,7 @@
 #include "core/image_io.h"
 #include "core/scene/load.h"
 #include "core/scene/specular_albedo.h"
+#include "core/scene/texture_transform.h"
 #include "tests/unit/core/temporary_folder.h"
 
 namespace saccade::core {
@@ -173,6 +174,71 @@ TEST(ObjMaterials, TexturesBesideTheScene) {
                              std::filesystem::copy_options::overwrite_existing);
   EXPECT_THROW(loadScene(folder / "a.obj", {}), Error);
   std::filesystem::remove(folder.path().parent_path() / "red.png");
+}
+
+TEST(ObjMaterials, ThePhysicallyBasedExtension) {
+  const Material m = materialOf(
+      "Kd 0.8 0.4 0.2\nKs 0.5 0.5 0.5\nNs 100\nNi 1.8\nillum 3\nPr 0.3\nPm 0.6\nPs 0.25\nPc 0.75\nPcr 0.125\n"
+      "aniso 0.5\nanisor 0.25\nKe 1 2 3\n");
+  EXPECT_EQ(m.baseColor, Vec3(0.8f, 0.4f, 0.2f));
+  EXPECT_EQ(m.roughness, 0.3f);
+  EXPECT_EQ(m.metallic, 0.6f);
+  EXPECT_EQ(m.ior, 1.8f);
+  EXPECT_EQ(m.specular, 1);
+  EXPECT_EQ(m.specularColor, Vec3(1));
+  EXPECT_EQ(m.sheenColor, Vec3(0.25f));
+  EXPECT_EQ(m.clearcoat, 0.75f);
+  EXPECT_EQ(m.clearcoatRoughness, 0.125f);
+  EXPECT_EQ(m.anisotropy, 0.5f);
+  EXPECT_FLOAT_EQ(m.anisotropyRotation, kPi / 2);
+  EXPECT_EQ(m.emission, Vec3(1, 2, 3));
+  const Material frosted = materialOf("Tf 1 1 1\nNi 1.5\nillum 6\nPr 0.25\nPc 9\n");
+  EXPECT_EQ(frosted.transmission, 1);
+  EXPECT_EQ(frosted.roughness, 0.25f);
+  EXPECT_EQ(frosted.clearcoat, 1);
+}
+
+TEST(ObjMaterials, TextureOptionsPlaceClampAndScale) {
+  TemporaryFolder folder;
+  writePng(folder / "a.png", ImageRgba8(2, 2, {200, 0, 0, 255}));
+  write(folder / "a.mtl",
+        "newmtl m\nmap_Kd -s 2 4 1 -o 0.25 0.5 0 a.png\nnorm -bm 0.5 -clamp on a.png\nmap_Ke a.png\n");
+  write(folder / "a.obj", std::string("mtllib a.mtl\n") + kQuad + "vt 0.1 0.2\nusemtl m\nf 1/1 2/1 3/1\n");
+  const Scene scene = loadScene(folder / "a.obj", {});
+  const Material& m = scene.materials[0];
+  // MTL, v up: (0.1, 0.2) * (2, 4) + (0.25, 0.5) = (0.45, 1.3); v down: 1 - 1.3.
+  const Vec2 at = uvMatrix(m.baseColorTexture) * Vec3(scene.meshOf(scene.objects[0]).uv0[0], 1);
+  EXPECT_LT(glm::length(at - Vec2(0.45f, -0.3f)), 1e-6f);
+  EXPECT_FALSE(m.emissionTexture.transformed());
+  EXPECT_EQ(m.normalScale, 0.5f);
+  EXPECT_EQ(scene.textures[static_cast<std::size_t>(m.normalTexture.texture)].wrapS, Wrap::clamp);
+  EXPECT_EQ(scene.textures[static_cast<std::size_t>(m.baseColorTexture.texture)].wrapT, Wrap::repeat);
+}
+
+TEST(ObjMaterials, RoughnessAndMetalMapsAreOneTexture) {
+  TemporaryFolder folder;
+  writePng(folder / "rough.png", ImageRgba8(4, 2, {50, 50, 50, 255}));
+  ImageRgba8 metal(2, 1, {0, 0, 0, 255});
+  metal.at(1, 0) = {255, 255, 255, 255};
+  writePng(folder / "metal.png", metal);
+  const auto load = [&](const std::string& mtl) {
+    write(folder / "a.mtl", "newmtl m\n" + mtl);
+    write(folder / "a.obj", std::string("mtllib a.mtl\n") + kQuad + "vt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    return loadScene(folder / "a.obj", {});
+  };
+  const Scene both = load("Pr 0.1\nPm 0.1\nmap_Pr rough.png\nmap_Pm metal.png\n");
+  const Material& m = both.materials[0];
+  EXPECT_EQ(m.roughness, 1);
+  EXPECT_EQ(m.metallic, 1);
+  ASSERT_TRUE(m.metallicRoughnessTexture);
+  const Texture& t = both.textures[static_cast<std::size_t>(m.metallicRoughnessTexture.texture)];
+  EXPECT_FALSE(t.srgb);
+  EXPECT_EQ(t.image.at(0, 1), (Rgba8{255, 50, 0, 255}));
+  EXPECT_EQ(t.image.at(3, 0), (Rgba8{255, 50, 255, 255}));
+  const Scene one = load("Pr 0.1\nPm 0.2\nmap_Pr gone.png\nmap_Pm metal.png\n");
+  EXPECT_EQ(one.materials[0].roughness, 0.1f);
+  EXPECT_EQ(one.materials[0].metallic, 1);
+  EXPECT_TRUE(warned(one, "gone.png"));
 }
 
 }  // namespace
