@@ -1,6 +1,10 @@
 // What the bundled scenes promise (data/README.md), counted in what the viewer draws.
 #include <gtest/gtest.h>
 
+#include <set>
+#include <utility>
+
+#include "core/scene/load.h"
 #include "tests/unit/app/fixtures.h"
 
 namespace saccade {
@@ -42,6 +46,26 @@ TEST(BundledScenes, TableCarriesTwoGlassesAndAMug) {
     closedGlasses += material.transmission > 0 && object.closed ? 1 : 0;
   }
   EXPECT_EQ(closedGlasses, 2);
+}
+
+TEST(BundledScenes, WardHoldsLobesOfManyWidths) {
+  const core::Scene scene = core::loadScene(tests::bundled("ward.glb"), {});
+  EXPECT_TRUE(scene.warnings.empty());
+  std::set<std::pair<float, float>> widths;
+  int isotropic = 0, along = 0, across = 0;
+  for (const core::Object& object : scene.objects) {
+    const core::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
+    if (!material.ward) continue;
+    const auto [it, isNew] = widths.emplace(material.ward->alphaX, material.ward->alphaY);
+    isotropic += it->first == it->second;
+    along += it->first < it->second;
+    across += it->first > it->second;
+    EXPECT_EQ(scene.meshOf(object).tangents.empty(), it->first == it->second) << object.name;
+  }
+  EXPECT_EQ(widths.size(), 7u);
+  EXPECT_GE(isotropic, 2);
+  EXPECT_GE(along, 2);
+  EXPECT_GE(across, 1);
 }
 
 }  // namespace
