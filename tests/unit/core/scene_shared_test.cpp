@@ -30,7 +30,7 @@ void expectWhole(const Scene& scene) {
     const std::size_t n = mesh.positions.size();
     EXPECT_EQ(mesh.normals.size(), n);
     EXPECT_TRUE(mesh.tangents.empty() || mesh.tangents.size() == n);
-    EXPECT_EQ(materialOf(scene, o).normalTexture ? n : 0, mesh.tangents.size());
+    EXPECT_EQ(materialOf(scene, o).needsTangents() ? n : 0, mesh.tangents.size());
     EXPECT_TRUE(
         std::all_of(mesh.indices.begin(), mesh.indices.end(), [&](std::uint32_t i) { return i < n; }));
     EXPECT_TRUE(std::all_of(mesh.normals.begin(), mesh.normals.end(),
