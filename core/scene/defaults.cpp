@@ -11,9 +11,6 @@ namespace saccade::core {
 namespace {
 
 constexpr float kPanelSide = 1, kPanelHeight = 0.95f, kPanelRadiance = 15;
-/// Where the panel of a scene that is no room stands, seen from its middle: above and a little to the left of
-/// the default camera, so that it lights what the camera sees and stays out of the picture.
-const Vec3 kKeyDirection(-0.25f, 1, 0.8f);
 /// Emitters that would light the faces of the bounds by less than this, W/m^2 on average, light nothing one
 /// would see: a lit label, windows painted white. A room keeps its light, around things most of it is lost.
 constexpr double kDimRoom = 0.05, kDimOpen = 0.25;
@@ -231,6 +228,17 @@ float ceilingHeight(const Scene& scene) {
   return height;
 }
 
+/// Unit, from the middle of a scene that is no room to its panel: above and to the left of the first camera,
+/// so that it lights what the camera sees and stays out of the picture.
+Vec3 keyDirection(const Scene& scene) {
+  Vec3 toEye = scene.cameras.empty() ? Vec3(0, 0, 1) : scene.cameras[0].eye - scene.bounds.center();
+  toEye.y = 0;
+  if (!(glm::length(toEye) > 0)) toEye = Vec3(0, 0, 1);
+  toEye = glm::normalize(toEye);
+  const Vec3 left = glm::cross(toEye, Vec3(0, 1, 0));
+  return glm::normalize(Vec3(0, 1, 0) + 0.55f * toEye + 0.6f * left);
+}
+
 }  // namespace
 
 bool onlyDimEmitters(const Scene& scene, const Surroundings& around) {
@@ -256,7 +264,7 @@ void addDefaultLight(Scene& scene, const Surroundings& around) {
   if (around.interior) {
     center.y = glm::mix(box.lo.y, ceilingHeight(scene), kPanelHeight);
   } else {
-    direction = -glm::normalize(kKeyDirection);
+    direction = -keyDirection(scene);
     center -= 1.25f * box.diagonal() * direction;
     side = 0.5f * box.diagonal();
   }

@@ -18,8 +18,8 @@ Surroundings look(const Scene& scene);
 bool onlyDimEmitters(const Scene& scene, const Surroundings& around);
 
 /// Adds an object emitting downwards, one metre square at 0.95 of the room's height, radiance 15. Departure:
-/// a scene that is no room gets it above, to the left and before its bounds, half as wide as their diagonal,
-/// so that things of any size are lit alike, on the side that the default camera sees.
+/// a scene that is no room gets it above its bounds on the first camera's side, half as wide as their
+/// diagonal, so that things of any size are lit alike, where one looks at them.
 void addDefaultLight(Scene& scene, const Surroundings& around);
 
 /// 60 degrees. In a closed room: at eye height near one end, looking along the longest free way. In a room

@@ -263,6 +263,21 @@ TEST(CompleteScene, DefaultLightOfAThingScalesWithItAndLightsTheSideOneSees) {
   EXPECT_NEAR(large.diagonal() / small.diagonal(), 2000, 0.1f);
 }
 
+TEST(CompleteScene, DefaultLightComesFromTheSideOfTheFilesCamera) {
+  for (const Vec3 eye : {Vec3(0, 1, -9), Vec3(7, -2, 3), Vec3(0, 9, 0)}) {
+    Scene scene = twoMaterials();
+    addObject(scene, boxMesh(Vec3(-1), Vec3(1)), 0, 0);
+    Camera camera;
+    camera.eye = eye;
+    camera.at = Vec3(0);
+    scene.cameras = {camera};
+    completeScene(scene, {});
+    const Vec3 panel = scene.objects[1].bounds.center();
+    EXPECT_GT(panel.y, 1);
+    EXPECT_GT(glm::dot(panel, eye), 0);
+  }
+}
+
 TEST(CompleteScene, EmittersTooDimToSeeByGetADefaultLightUnlessTheUserLit) {
   const auto lit = [](float emission, bool option) {
     Scene scene = twoMaterials();
