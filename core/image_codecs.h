@@ -18,9 +18,11 @@ void checkDimensions(std::int64_t width, std::int64_t height, const std::string&
 inline constexpr int kRowsPerLook = 64;
 
 bool isPng(std::span<const std::uint8_t> bytes);
+void checkPngHeader(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 decodePng(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
 bool isJpeg(std::span<const std::uint8_t> bytes);
+void checkJpegHeader(std::span<const std::uint8_t> bytes, const std::string& name);
 ImageRgba8 decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
 }  // namespace saccade::core::codecs

@@ -17,6 +17,16 @@ void codecs::checkDimensions(std::int64_t width, std::int64_t height, const std:
   }
 }
 
+std::string imageType(std::span<const std::uint8_t> bytes) {
+  return codecs::isPng(bytes) ? "image/png" : codecs::isJpeg(bytes) ? "image/jpeg" : "";
+}
+
+void checkImageHeader(std::span<const std::uint8_t> bytes, const std::string& name) {
+  if (codecs::isPng(bytes)) return codecs::checkPngHeader(bytes, name);
+  if (codecs::isJpeg(bytes)) return codecs::checkJpegHeader(bytes, name);
+  throw Error(name + ": neither a PNG nor a JPEG image");
+}
+
 ImageRgba8 decodeImage(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget) {
   if (codecs::isPng(bytes)) return codecs::decodePng(bytes, name, budget);
   if (codecs::isJpeg(bytes)) return codecs::decodeJpeg(bytes, name, budget);

@@ -16,6 +16,11 @@ namespace saccade::core {
 /// Largest image that is decoded, in pixels.
 inline constexpr std::int64_t kMaxImagePixels = 16384LL * 16384LL;
 
+/// "image/png", "image/jpeg", or "" for what decodeImage does not read; by content.
+std::string imageType(std::span<const std::uint8_t> bytes);
+/// Everything that decodeImage checks before it allocates pixels.
+void checkImageHeader(std::span<const std::uint8_t> bytes, const std::string& name);
+
 /// PNG (8 or 16 bit, any colour type, interlaced) or JPEG (grey, RGB, CMYK) from memory; the format is
 /// recognised by content; gamma and profile chunks are ignored. `name` is for messages. The pixels' bytes
 /// stay charged to `budget`. Throws core::Error, also for a truncated file and, before anything is allocated,

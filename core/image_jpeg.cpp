@@ -137,18 +137,10 @@ struct Compressor {
   }
 };
 
-}  // namespace
-
-bool codecs::isJpeg(std::span<const std::uint8_t> bytes) {
-  return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
-}
-
-ImageRgba8 codecs::decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name,
-                              LoadBudget& budget) {
-  Decompressor jpeg;
-  jpeg.errors.budget = &budget;
+/// Reads and checks the header.
+void openJpeg(Decompressor& jpeg, std::span<const std::uint8_t> bytes, const std::string& name) {
   if (!jpeg.readHeader(bytes)) throw Error(name + ": damaged JPEG: " + jpeg.errors.message);
-  checkDimensions(jpeg.codec.image_width, jpeg.codec.image_height, name);
+  codecs::checkDimensions(jpeg.codec.image_width, jpeg.codec.image_height, name);
   const J_COLOR_SPACE space = jpeg.codec.jpeg_color_space;
   if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr && !jpeg.isCmyk())
     throw Error(name + ": JPEG in an unknown colour space; convert it to RGB");
@@ -157,6 +149,25 @@ ImageRgba8 codecs::decodeJpeg(std::span<const std::uint8_t> bytes, const std::st
     throw Error(name + ": damaged JPEG: " + std::to_string(bytes.size()) + " bytes cannot hold " +
                 std::to_string(jpeg.codec.image_width) + " x " + std::to_string(jpeg.codec.image_height) +
                 " pixels");
+}
+
+}  // namespace
+
+bool codecs::isJpeg(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
+}
+
+void codecs::checkJpegHeader(std::span<const std::uint8_t> bytes, const std::string& name) {
+  Decompressor jpeg;
+  openJpeg(jpeg, bytes, name);
+}
+
+ImageRgba8 codecs::decodeJpeg(std::span<const std::uint8_t> bytes, const std::string& name,
+                              LoadBudget& budget) {
+  Decompressor jpeg;
+  jpeg.errors.budget = &budget;
+  openJpeg(jpeg, bytes, name);
+  const std::uint64_t pixels = std::uint64_t{jpeg.codec.image_width} * jpeg.codec.image_height;
   // A progressive file's coefficients (16 bits each, at most 4 components) are held beside the pixels.
   const std::uint64_t coefficients = jpeg.codec.progressive_mode ? pixels * 8 : 0;
   budget.charge(pixels * sizeof(Rgba8) + coefficients, name);

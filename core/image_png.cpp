@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
+#include <utility>
 
 #include "core/error.h"
 #include "core/image_codecs.h"
@@ -101,6 +102,21 @@ std::vector<png_bytep> rowPointers(ImageRgba8& image) {
   return rows;
 }
 
+/// Reads and checks the header; returns width and height.
+std::pair<int, int> openPng(PngState& state, std::span<const std::uint8_t> bytes, const std::string& name) {
+  state.in = bytes;
+  if (!readHeader(state)) throw Error(name + ": damaged PNG: " + state.message);
+  const std::int64_t width = png_get_image_width(state.png, state.info);
+  const std::int64_t height = png_get_image_height(state.png, state.info);
+  codecs::checkDimensions(width, height, name);
+  const std::uint64_t claimed = png_get_rowbytes(state.png, state.info) * static_cast<std::uint64_t>(height);
+  if (claimed > kMaxExpansion * bytes.size()) {
+    throw Error(name + ": damaged PNG: " + std::to_string(bytes.size()) + " bytes cannot hold " +
+                std::to_string(width) + " x " + std::to_string(height) + " pixels");
+  }
+  return {static_cast<int>(width), static_cast<int>(height)};
+}
+
 bool writeRows(PngState& state, int width, int height, bool opaque, png_bytepp rows) {
   if (setjmp(png_jmpbuf(state.png))) return false;
   png_set_write_fn(state.png, &state, writeBytes, nullptr);
@@ -123,22 +139,18 @@ bool codecs::isPng(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0;
 }
 
+void codecs::checkPngHeader(std::span<const std::uint8_t> bytes, const std::string& name) {
+  PngState state(false);
+  openPng(state, bytes, name);
+}
+
 ImageRgba8 codecs::decodePng(std::span<const std::uint8_t> bytes, const std::string& name,
                              LoadBudget& budget) {
   PngState state(false);
   state.budget = &budget;
-  state.in = bytes;
-  if (!readHeader(state)) throw Error(name + ": damaged PNG: " + state.message);
-  const std::int64_t width = png_get_image_width(state.png, state.info);
-  const std::int64_t height = png_get_image_height(state.png, state.info);
-  checkDimensions(width, height, name);
-  const std::uint64_t claimed = png_get_rowbytes(state.png, state.info) * static_cast<std::uint64_t>(height);
-  if (claimed > kMaxExpansion * bytes.size()) {
-    throw Error(name + ": damaged PNG: " + std::to_string(bytes.size()) + " bytes cannot hold " +
-                std::to_string(width) + " x " + std::to_string(height) + " pixels");
-  }
-  budget.charge(static_cast<std::uint64_t>(width * height), sizeof(Rgba8), name);
-  ImageRgba8 image(static_cast<int>(width), static_cast<int>(height));
+  const auto [width, height] = openPng(state, bytes, name);
+  budget.charge(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), sizeof(Rgba8), name);
+  ImageRgba8 image(width, height);
   std::vector<png_bytep> rows = rowPointers(image);
   if (!readRows(state, rows.data())) throw Error(name + ": damaged PNG: " + state.message);
   return image;

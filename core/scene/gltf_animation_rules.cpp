@@ -16,6 +16,12 @@ struct Sampler {
   bool cubic;
 };
 
+Sampler samplerOf(const Element& of, const std::vector<GltfAccessor>& accessors) {
+  const Json& json = of.json();
+  return {of, accessors[json["input"].get<std::size_t>()], accessors[json["output"].get<std::size_t>()],
+          json.value("interpolation", "LINEAR") == "CUBICSPLINE"};
+}
+
 /// Why a channel is not played, or null if it is.
 const char* whyLeftOut(const Element& target, const Json& nodes) {
   const std::string path = target.text("path");
@@ -28,16 +34,38 @@ const char* whyLeftOut(const Element& target, const Json& nodes) {
   return nullptr;
 }
 
-void checkInput(const Sampler& s) {
+/// Memory for the contents of a sampler's accessors while they are checked.
+class Contents {
+ public:
+  Contents(const GltfAccessor& accessor, LoadBudget& budget, const std::string& what)
+      : budget_(budget), bytes_(accessor.count * accessor.components * sizeof(float)) {
+    budget.charge(bytes_, what);
+    values = contentsOf(accessor);
+  }
+  Contents(const Contents&) = delete;
+  Contents& operator=(const Contents&) = delete;
+  ~Contents() { budget_.release(bytes_); }
+  std::vector<float> values;
+
+ private:
+  LoadBudget& budget_;
+  std::uint64_t bytes_;
+};
+
+/// Why the key times are of no use, or null if they are.
+const char* inputFault(const Sampler& s, LoadBudget& budget) {
   if (s.input.componentType != 5126 || s.input.components != 1 || s.input.normalized)
     s.element.refuse("input must be float scalars");
   if (s.cubic && s.input.count < 2) s.element.refuse("CUBICSPLINE needs at least 2 keys");
+  const Contents input(s.input, budget, s.element.path());
   float before = -1;
-  for (const float t : contentsOf(s.input)) {
-    if (!std::isfinite(t) || t < 0) s.element.refuse("input holds a time that is negative or not finite");
-    if (t <= before) s.element.refuse("input times must increase strictly");
+  for (const float t : input.values) {
+    if (!std::isfinite(t) || t < 0)
+      return "animation channels with a time that is negative or no number were left out";
+    if (t <= before) return "animation channels whose times do not increase were left out";
     before = t;
   }
+  return nullptr;
 }
 
 void checkQuaternions(const Sampler& s, const std::vector<float>& values, Repairs& repairs) {
@@ -52,7 +80,7 @@ void checkQuaternions(const Sampler& s, const std::vector<float>& values, Repair
     repairs.add("animated rotations were not of unit length and are normalised", s.element.path(), off);
 }
 
-void checkOutput(const Sampler& s, const std::string& path, Repairs& repairs) {
+void checkOutput(const Sampler& s, const std::string& path, Repairs& repairs, LoadBudget& budget) {
   const bool rotation = path == "rotation";
   const bool integers =
       s.output.normalized && s.output.componentType >= 5120 && s.output.componentType <= 5123;
@@ -63,32 +91,35 @@ void checkOutput(const Sampler& s, const std::string& path, Repairs& repairs) {
   if (s.output.count != expected)
     s.element.refuse("output has " + std::to_string(s.output.count) + " elements, must have " +
                      std::to_string(expected));
-  const std::vector<float> values = contentsOf(s.output);
-  for (const float x : values)
+  const Contents output(s.output, budget, s.element.path());
+  for (const float x : output.values)
     if (!std::isfinite(x)) s.element.refuse("output holds a number that is not finite");
-  if (rotation) checkQuaternions(s, values, repairs);
+  if (rotation) checkQuaternions(s, output.values, repairs);
 }
 
 /// Indices of the channels that stay.
 std::vector<std::size_t> checkAnimation(const Element& animation, const Json& nodes,
-                                        const std::vector<GltfAccessor>& accessors, Repairs& repairs) {
+                                        const std::vector<GltfAccessor>& accessors, Repairs& repairs,
+                                        LoadBudget& budget) {
   const auto samplers = animation.array("samplers"), channels = animation.array("channels");
+  std::vector<const char*> faults;
+  for (const Element& of : samplers) faults.push_back(inputFault(samplerOf(of, accessors), budget));
   std::vector<std::size_t> kept;
   std::set<std::pair<std::size_t, std::string>> targets;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Element& channel = channels[i];
-    const Element& of = samplers[channel.index("sampler", samplers.size(), "samplers")];
+    budget.checkTime();
+    const std::size_t sampled = channel.index("sampler", samplers.size(), "samplers");
+    const Sampler sampler = samplerOf(samplers[sampled], accessors);
     const Element target = channel.member("target");
-    const Sampler sampler{of, accessors[of.index("input", accessors.size(), "accessors")],
-                          accessors[of.index("output", accessors.size(), "accessors")],
-                          of.has("interpolation") && of.text("interpolation") == "CUBICSPLINE"};
-    checkInput(sampler);
-    if (const char* why = whyLeftOut(target, nodes)) {
-      repairs.add(why, channel.path());
+    const char* left = whyLeftOut(target, nodes);
+    if (!left) left = faults[sampled];
+    if (left) {
+      repairs.add(left, channel.path());
       continue;
     }
     const std::string path = target.text("path");
-    checkOutput(sampler, path, repairs);
+    checkOutput(sampler, path, repairs, budget);
     if (targets.insert({target.json()["node"].get<std::size_t>(), path}).second) {
       kept.push_back(i);
     } else {
@@ -101,14 +132,14 @@ std::vector<std::size_t> checkAnimation(const Element& animation, const Json& no
 }  // namespace
 
 void checkAnimations(Json& root, const std::string& file, const std::vector<GltfAccessor>& accessors,
-                     Repairs& repairs) {
+                     Repairs& repairs, LoadBudget& budget) {
   const auto animations = Element(root, file).array("animations");
   static const Json kNone = Json::array();
   const Json& nodes = root.contains("nodes") ? root["nodes"] : kNone;
   Json kept = Json::array();
   for (const Element& animation : animations) {
     Json channels = Json::array();
-    for (const std::size_t i : checkAnimation(animation, nodes, accessors, repairs))
+    for (const std::size_t i : checkAnimation(animation, nodes, accessors, repairs, budget))
       channels.push_back(animation.json()["channels"][i]);
     if (channels.empty()) continue;
     kept.push_back(animation.json());

@@ -33,18 +33,24 @@ float componentAt(const std::uint8_t* at, const GltfAccessor& a) {
 
 }  // namespace
 
+std::uint64_t elementBytes(const GltfAccessor& a) {
+  const std::uint64_t bytes = gltfComponentBytes(a.componentType), column = a.rows * bytes;
+  if (a.rows == a.components) return column;
+  return (column + 3) / 4 * 4 * (a.components / a.rows);
+}
+
+void readElement(const GltfAccessor& a, const std::uint8_t* at, float* components) {
+  const std::uint64_t bytes = gltfComponentBytes(a.componentType);
+  const std::uint64_t column = a.rows == a.components ? 0 : elementBytes(a) / (a.components / a.rows);
+  for (std::uint64_t c = 0; c < a.components; ++c)
+    components[c] = componentAt(at + c / a.rows * column + c % a.rows * bytes, a);
+}
+
 std::vector<float> contentsOf(const GltfAccessor& a) {
-  const std::uint64_t bytes = gltfComponentBytes(a.componentType), element = bytes * a.components;
   std::vector<float> out(a.count * a.components, 0.0f);
-  const auto put = [&](std::uint64_t i, const std::uint8_t* from) {
-    for (std::uint64_t c = 0; c < a.components; ++c)
-      out[i * a.components + c] = componentAt(from + c * bytes, a);
-  };
-  if (a.data)
-    for (std::uint64_t i = 0; i < a.count; ++i) put(i, a.data + i * a.stride);
-  for (std::uint64_t i = 0; i < a.sparse.count; ++i)
-    put(unsignedFrom(a.sparse.indices + i * a.sparse.indexBytes, a.sparse.indexBytes),
-        a.sparse.values + i * element);
+  forEachElement(a, [&](std::uint64_t i, const float* components) {
+    std::copy_n(components, a.components, out.begin() + static_cast<std::ptrdiff_t>(i * a.components));
+  });
   return out;
 }
 

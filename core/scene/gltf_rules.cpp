@@ -1,203 +1,118 @@
 #include "core/scene/gltf_rules.h"
 
 #include <algorithm>
-#include <cstring>
-
-#include "core/scene/gltf_gate.h"
+#include <array>
+#include <cmath>
 
 namespace saccade::core {
 
 void checkVersion(const Element& root) {
   const Element asset = root.member("asset");
   const std::string version = asset.text("version");
-  if (!version.starts_with("2.")) asset.refuse("version is '" + version + "'; only glTF 2.x is read");
+  const bool digits = version.size() > 2 && std::all_of(version.begin() + 2, version.end(),
+                                                        [](char c) { return c >= '0' && c <= '9'; });
+  if (!version.starts_with("2.") || !digits)
+    asset.refuse("version is '" + version + "'; only glTF 2.x is read");
   if (asset.has("minVersion") && asset.text("minVersion") != "2.0")
     asset.refuse("needs at least version " + asset.text("minVersion") + "; 2.0 is supported");
 }
 
-void checkAsset(const Element& root, std::span<const char* const> supported, Warnings& warnings) {
+void checkAsset(const Element& root, std::span<const char* const> supported, Warnings& warnings,
+                Repairs& repairs) {
   const auto known = [&](const std::string& name) {
     return std::any_of(supported.begin(), supported.end(), [&](const char* s) { return name == s; });
   };
-  const auto names = [&](const char* key) {
-    std::vector<std::string> out;
-    if (!root.has(key)) return out;
-    const Json& list = root.json()[key];
-    if (!list.is_array()) root.refuse(std::string("'") + key + "' must be an array of names");
-    for (const Json& n : list) {
-      if (!n.is_string()) root.refuse(std::string("'") + key + "' must be an array of names");
-      out.push_back(n.get<std::string>());
-    }
-    return out;
+  static const Json kNone = Json::array();
+  const auto names = [&](const char* key) -> const Json& { return root.has(key) ? root.json()[key] : kNone; };
+  const Json &required = names("extensionsRequired"), &used = names("extensionsUsed");
+  const auto contains = [](const Json& list, const Json& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
   };
-  for (const std::string& name : names("extensionsRequired"))
-    if (!known(name)) root.refuse("requires the extension " + name + ", which this program does not support");
-  for (const std::string& name : names("extensionsUsed"))
-    if (!known(name)) warnings.push_back("extension " + name + " is not supported; what it adds is left out");
+  for (const Json& name : required) {
+    if (!known(name.get<std::string>()))
+      root.refuse("requires the extension " + name.get<std::string>() +
+                  ", which this program does not support");
+    if (!contains(used, name))
+      repairs.add("extensions are required that 'extensionsUsed' does not name", root.path());
+  }
+  for (const Json& name : used)
+    if (!known(name.get<std::string>()))
+      warnings.push_back("extension " + name.get<std::string>() +
+                         " is not supported; what it adds is left out");
+  if (contains(used, "KHR_mesh_quantization") && !contains(required, "KHR_mesh_quantization"))
+    repairs.add("files use KHR_mesh_quantization without requiring it", root.path());
 }
 
 namespace {
 
-struct ViewSpan {
-  const std::uint8_t* data;
-  std::uint64_t length;
-  std::uint64_t stride;
-};
-
-ViewSpan checkView(const Element& view, const std::vector<std::vector<std::uint8_t>>& buffers) {
-  const auto& buffer = buffers[view.index("buffer", buffers.size(), "buffers")];
-  const std::uint64_t offset = view.integerOr("byteOffset", 0, 0, buffer.size());
-  const std::uint64_t length = view.integer("byteLength", 1, buffer.size());
-  if (length > buffer.size() - offset)
-    view.refuse("reaches byte " + std::to_string(offset + length) + " of a buffer of " +
-                std::to_string(buffer.size()));
-  return {buffer.data() + offset, length, view.integerOr("byteStride", 0, 4, 252)};
-}
-
-/// `count` elements of `bytes` each, `stride` apart, from `offset`, must lie within the view.
-void checkRange(const Element& who, const ViewSpan& view, std::uint64_t offset, std::uint64_t count,
-                std::uint64_t bytes, std::uint64_t stride) {
-  // All of these are below 2^60, so the sums below cannot wrap.
-  if (stride < bytes) who.refuse("byteStride is smaller than one element");
-  if (offset > view.length || (count - 1) * stride + bytes > view.length - offset)
-    who.refuse("reaches beyond its bufferView of " + std::to_string(view.length) + " bytes");
-}
-
-GltfAccessor::Sparse checkSparse(const Element& accessor, std::uint64_t count, std::uint64_t elementBytes,
-                                 const std::vector<ViewSpan>& views) {
-  const Element sparse = accessor.member("sparse");
-  const std::uint64_t n = sparse.integer("count", 1, count);
-  const Element indices = sparse.member("indices"), values = sparse.member("values");
-  const ViewSpan& indexView = views[indices.index("bufferView", views.size(), "bufferViews")];
-  const ViewSpan& valueView = views[values.index("bufferView", views.size(), "bufferViews")];
-  const std::uint64_t bytes = gltfComponentBytes(indices.integer("componentType", 5121, 5125));
-  const std::uint64_t offset = indices.integerOr("byteOffset", 0, 0, indexView.length);
-  const std::uint64_t valueOffset = values.integerOr("byteOffset", 0, 0, valueView.length);
-  checkRange(indices, indexView, offset, n, bytes, bytes);
-  checkRange(values, valueView, valueOffset, n, elementBytes, elementBytes);
-  std::uint64_t before = 0;
-  for (std::uint64_t i = 0; i < n; ++i) {
-    const std::uint64_t index = unsignedFrom(indexView.data + offset + i * bytes, bytes);
-    if (index >= count)
-      indices.refuse("names element " + std::to_string(index) + " of " + std::to_string(count));
-    if (i > 0 && index <= before) indices.refuse("must increase strictly");
-    before = index;
-  }
-  return {n, bytes, indexView.data + offset, valueView.data + valueOffset};
-}
-
-}  // namespace
-
-std::vector<GltfAccessor> checkAccessors(const Element& root,
-                                         const std::vector<std::vector<std::uint8_t>>& buffers) {
-  std::vector<ViewSpan> views;
-  for (const Element& view : root.array("bufferViews")) views.push_back(checkView(view, buffers));
-  std::vector<GltfAccessor> out;
-  for (const Element& accessor : root.array("accessors")) {
-    GltfAccessor a;
-    a.componentType = accessor.integer("componentType", 5120, 5126);
-    a.components = gltfComponents(accessor.text("type"));
-    a.count = accessor.integer("count", 1, kMaxAccessorElements);
-    a.normalized = accessor.has("normalized") && accessor.json()["normalized"].get<bool>();
-    const std::uint64_t bytes = gltfComponentBytes(a.componentType) * a.components;
-    if (accessor.has("bufferView")) {
-      const ViewSpan& view = views[accessor.index("bufferView", views.size(), "bufferViews")];
-      const std::uint64_t offset = accessor.integerOr("byteOffset", 0, 0, view.length);
-      a.stride = view.stride == 0 ? bytes : view.stride;
-      checkRange(accessor, view, offset, a.count, bytes, a.stride);
-      a.data = view.data + offset;
+/// Number of lights. Those without meaning shine no more.
+std::size_t checkLights(Json& root, const std::string& file, Repairs& repairs) {
+  const Json::json_pointer where("/extensions/KHR_lights_punctual/lights");
+  if (!root.contains(where)) return 0;
+  Json& lights = root[where];
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    Json& light = lights[i];
+    const std::string path = file + ": lights[" + std::to_string(i) + "]";
+    if (light["type"] != "point" && light["type"] != "spot" && light["type"] != "directional") {
+      repairs.add("lights of a type that glTF does not know were put out", path);
+      light = {{"type", "point"}, {"intensity", 0}};
     }
-    if (accessor.has("sparse")) a.sparse = checkSparse(accessor, a.count, bytes, views);
-    out.push_back(a);
+    if (light["type"] != "spot") continue;
+    if (!light.contains("spot")) {
+      repairs.add("spot lights without a cone were given glTF's default one", path);
+      light["spot"] = Json::object();
+    }
+    Json& cone = light["spot"];
+    constexpr double kDefaultOuter = 0.7853981633974483;  // pi/4
+    if (cone.value("innerConeAngle", 0.0) < cone.value("outerConeAngle", kDefaultOuter)) continue;
+    repairs.add("spot lights whose inner cone is not inside the outer one were given no inner one", path);
+    cone.erase("innerConeAngle");
   }
-  return out;
+  return lights.size();
 }
 
-namespace {
-
-void checkAttribute(const Element& primitive, const std::string& name, const Json& value,
-                    const std::vector<Element>& accessors, std::uint64_t& vertexCount) {
-  const auto index = gltfInteger(value);
-  if (!index || *index >= accessors.size())
-    primitive.refuse("attribute " + name + " is " + value.dump() + ", but there are " +
-                     std::to_string(accessors.size()) + " accessors");
-  const Element& accessor = accessors[*index];
-  const std::string type = accessor.text("type");
-  const std::uint64_t component = accessor.integer("componentType", 5120, 5126);
-  const auto must = [&](bool good, const char* rule) {
-    if (!good) primitive.refuse("attribute " + name + " must be " + rule + ", is " + type);
-  };
-  if (name == "POSITION" || name == "NORMAL") must(type == "VEC3", "VEC3");
-  if (name == "TANGENT") must(type == "VEC4", "VEC4");
-  if (name.starts_with("TEXCOORD_")) must(type == "VEC2", "VEC2");
-  if (name.starts_with("COLOR_")) must(type == "VEC3" || type == "VEC4", "VEC3 or VEC4");
-  if (component == 5125) primitive.refuse("attribute " + name + " must not be of unsigned int components");
-  const std::uint64_t count = accessor.integer("count", 1, kMaxAccessorElements);
-  if (vertexCount == 0) vertexCount = count;
-  if (count != vertexCount) primitive.refuse("attribute " + name + " has another count than the others");
-}
-
-void checkPrimitive(const Element& primitive, const std::vector<Element>& accessors) {
-  const Element attributes = primitive.member("attributes");
-  std::uint64_t vertexCount = 0;
-  for (const auto& [name, value] : attributes.json().items())
-    checkAttribute(primitive, name, value, accessors, vertexCount);
-  if (!primitive.has("indices")) return;
-  const Element& indices = accessors[primitive.index("indices", accessors.size(), "accessors")];
-  const std::uint64_t component = indices.integer("componentType", 5120, 5126);
-  if (indices.text("type") != "SCALAR" || (component != 5121 && component != 5123 && component != 5125))
-    primitive.refuse("indices must be unsigned scalars");
-}
-
-void checkLights(const Element& root, std::size_t& lightCount) {
-  lightCount = 0;
-  if (!root.has("extensions") || !root.member("extensions").has("KHR_lights_punctual")) return;
-  const auto lights = root.member("extensions").member("KHR_lights_punctual").array("lights");
-  lightCount = lights.size();
-  for (const Element& light : lights) {
-    const std::string type = light.text("type");
-    if (type != "point" && type != "spot" && type != "directional")
-      light.refuse("unknown light type '" + type + "'");
+/// What a perspective or orthographic camera breaks, or null.
+const char* cameraFault(const Json& camera) {
+  const bool perspective = camera.contains("perspective"), orthographic = camera.contains("orthographic");
+  if (perspective == orthographic)
+    return "cameras that are not either perspective or orthographic were left out";
+  if (!camera.contains(camera["type"].get<std::string>()))
+    return "cameras of another type than they say were left out";
+  if (orthographic) {
+    const Json& lens = camera["orthographic"];
+    const bool flat = lens["xmag"] == 0 || lens["ymag"] == 0;
+    const bool empty = flat || !(lens["zfar"] > lens["znear"]) || lens["znear"] < 0;
+    return empty ? "orthographic cameras without extent were left out" : nullptr;
   }
+  const Json& lens = camera["perspective"];
+  return lens["yfov"] > 0 ? nullptr : "cameras with a field of view of 0 or less were left out";
 }
 
-void checkCameras(const Element& root) {
-  for (const Element& camera : root.array("cameras")) {
-    const std::string type = camera.text("type");
-    if (type != "perspective" && type != "orthographic") camera.refuse("unknown camera type '" + type + "'");
-    const Element lens = camera.member(type.c_str());
-    const char* const perspective[] = {"yfov", "znear"};
-    const char* const orthographic[] = {"xmag", "ymag", "zfar", "znear"};
-    const std::span<const char* const> needed = type == "perspective"
-                                                    ? std::span<const char* const>(perspective)
-                                                    : std::span<const char* const>(orthographic);
-    for (const char* key : needed)
-      if (!lens.has(key) || !lens.json()[key].is_number())
-        lens.refuse(std::string("lacks the number '") + key + "'");
+void checkCameras(Json& root, const std::string& file, Repairs& repairs) {
+  if (!root.contains("cameras")) return;
+  for (std::size_t i = 0; i < root["cameras"].size(); ++i) {
+    Json& camera = root["cameras"][i];
+    const std::string path = file + ": cameras[" + std::to_string(i) + "]";
+    if (const char* fault = cameraFault(camera)) {
+      repairs.add(fault, path);
+      // The loader leaves orthographic ones out.
+      camera = {{"type", "orthographic"},
+                {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 1}, {"znear", 0}}}};
+    }
+    if (!camera.contains("perspective")) continue;
+    const Json& lens = camera["perspective"];
+    if (!(lens["znear"] > 0) || (lens.contains("zfar") && lens["zfar"] <= lens["znear"]))
+      repairs.add("cameras whose depth range is empty were given this program's own", path);
   }
-}
-
-std::vector<std::size_t> indexList(const Element& owner, const char* key, std::size_t count,
-                                   const char* what) {
-  std::vector<std::size_t> out;
-  if (!owner.has(key)) return out;
-  const Json& list = owner.json()[key];
-  if (!list.is_array()) owner.refuse(std::string("'") + key + "' must be an array");
-  for (const Json& v : list) {
-    const auto index = gltfInteger(v);
-    if (!index || *index >= count)
-      owner.refuse(std::string("'") + key + "' holds " + v.dump() + ", but there are " +
-                   std::to_string(count) + " " + what);
-    out.push_back(static_cast<std::size_t>(*index));
-  }
-  return out;
 }
 
 /// One parent each, then: walking up from every node ends at a root. Returns the parents.
 std::vector<std::ptrdiff_t> checkForest(const std::vector<Element>& nodes) {
   std::vector<std::ptrdiff_t> parent(nodes.size(), -1);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (const std::size_t child : indexList(nodes[i], "children", nodes.size(), "nodes")) {
+    if (!nodes[i].has("children")) continue;
+    for (const Json& entry : nodes[i].json()["children"]) {
+      const auto child = entry.get<std::size_t>();
       if (parent[child] >= 0) nodes[child].refuse("has two parents");
       parent[child] = static_cast<std::ptrdiff_t>(i);
     }
@@ -216,33 +131,75 @@ std::vector<std::ptrdiff_t> checkForest(const std::vector<Element>& nodes) {
   return parent;
 }
 
-void checkNodes(const Element& root, std::size_t lights) {
-  const auto nodes = root.array("nodes");
+double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The three columns are perpendicular and not 0, and the last row is 0, 0, 0, 1.
+bool isTranslationRotationScale(const Json& matrix) {
+  constexpr double kTolerance = 5e-4;  // of the cosine: matrices are written with few digits
+  std::array<double, 16> m;
+  for (std::size_t i = 0; i < 16; ++i) m[i] = matrix[i].get<double>();
+  const double* columns[3] = {&m[0], &m[4], &m[8]};
+  for (int i = 0; i < 3; ++i) {
+    const double *a = columns[i], *b = columns[(i + 1) % 3];
+    const double lengths = std::sqrt(dot(a, a) * dot(b, b));
+    if (!(lengths > 0) || std::abs(dot(a, b)) > kTolerance * lengths) return false;
+  }
+  return m[3] == 0 && m[7] == 0 && m[11] == 0 && m[15] == 1;
+}
+
+void checkTransform(const Element& node, Repairs& repairs) {
+  const Json& json = node.json();
+  if (node.has("matrix")) {
+    if (!isTranslationRotationScale(json["matrix"]))
+      repairs.add("node matrices are singular, sheared or projective and were taken as they stand",
+                  node.path());
+    if (node.has("translation") || node.has("rotation") || node.has("scale"))
+      repairs.add("nodes have both a matrix and translation, rotation or scale; the matrix was taken",
+                  node.path());
+  }
+  if (!node.has("rotation")) return;
+  double square = 0;
+  for (const Json& x : json["rotation"]) square += x.get<double>() * x.get<double>();
+  constexpr double kTolerance = 0.00769;
+  if (square > 0 && !(std::abs(std::sqrt(square) - 1) <= kTolerance))
+    repairs.add("node rotations were not of unit length and were normalised", node.path());
+}
+
+/// Skins and morph targets are left out as a whole; what is wrong with their use is reported all the same.
+void checkSkinUse(const Element& node, const std::vector<Element>& meshes, Repairs& repairs) {
+  const Json* mesh = node.has("mesh") ? &meshes[node.json()["mesh"].get<std::size_t>()].json() : nullptr;
+  const Json* first = mesh ? &(*mesh)["primitives"][0] : nullptr;
+  if (node.has("skin") && !(first && (*first)["attributes"].contains("JOINTS_0")))
+    repairs.add("nodes have a skin without a mesh that has joints; it is ignored", node.path());
+  if (!node.has("weights")) return;
+  const std::size_t targets = first && first->contains("targets") ? (*first)["targets"].size() : 0;
+  if (node.json()["weights"].size() != targets)
+    repairs.add("morph weights do not fit the targets; both are ignored", node.path());
+}
+
+void checkNodes(const Element& root, std::size_t lights, Repairs& repairs) {
+  const auto nodes = root.array("nodes"), meshes = root.array("meshes");
   for (const Element& node : nodes) {
+    checkTransform(node, repairs);
+    checkSkinUse(node, meshes, repairs);
     if (!node.has("extensions") || !node.member("extensions").has("KHR_lights_punctual")) continue;
     node.member("extensions").member("KHR_lights_punctual").index("light", lights, "lights");
   }
   const std::vector<std::ptrdiff_t> parent = checkForest(nodes);
-  const auto scenes = root.array("scenes");
-  for (const Element& scene : scenes)
-    for (const std::size_t node : indexList(scene, "nodes", nodes.size(), "nodes"))
-      if (parent[node] >= 0) scene.refuse("names node " + std::to_string(node) + ", which is not a root");
-  root.optionalIndex("scene", scenes.size(), "scenes");
+  for (const Element& scene : root.array("scenes")) {
+    if (!scene.has("nodes")) continue;
+    for (const Json& node : scene.json()["nodes"])
+      if (parent[node.get<std::size_t>()] >= 0)
+        scene.refuse("names node " + node.dump() + ", which is not a root");
+  }
 }
 
 }  // namespace
 
-void checkReferences(const Element& root) {
-  const auto accessors = root.array("accessors");
-  for (const Element& mesh : root.array("meshes")) {
-    const auto primitives = mesh.array("primitives");
-    if (primitives.empty()) mesh.refuse("has no primitives");
-    for (const Element& primitive : primitives) checkPrimitive(primitive, accessors);
-  }
-  std::size_t lights = 0;
-  checkLights(root, lights);
-  checkCameras(root);
-  checkNodes(root, lights);
+void checkGraph(Json& root, const std::string& file, Repairs& repairs) {
+  const std::size_t lights = checkLights(root, file, repairs);
+  checkCameras(root, file, repairs);
+  checkNodes(Element(root, file), lights, repairs);
 }
 
 }  // namespace saccade::core

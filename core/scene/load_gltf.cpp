@@ -129,6 +129,7 @@ Mesh localMesh(const tinygltf::Model& model, const tinygltf::Primitive& primitiv
   if (const int a = attribute("TEXCOORD_0"); a >= 0) mesh.uv0 = readVec2(model, a);
   if (const int a = attribute("TEXCOORD_1"); a >= 0) mesh.uv1 = readVec2(model, a);
   if (const int a = attribute("COLOR_0"); a >= 0) mesh.colors = readVec4(model, a);
+  for (Vec4& color : mesh.colors) color = glm::clamp(color, 0.0f, 1.0f);
   std::vector<std::uint32_t> indices;
   if (primitive.indices >= 0) {
     indices = readIndices(model, primitive.indices);
