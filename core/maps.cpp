@@ -228,6 +228,15 @@ void addLight(ContentHash& hash, const PunctualLight& l) {
   for (const float f : {l.range, l.cosInner, l.cosOuter}) hash.add(f);
 }
 
+void addEnvironment(ContentHash& hash, const Environment& e) {
+  hash.add(e.radiance.width());
+  hash.add(e.radiance.height());
+  const auto& pixels = e.radiance.pixels();
+  static_assert(sizeof(Vec3) == 12);
+  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size() * sizeof(Vec3)));
+  hash.add(e.rotation);
+}
+
 }  // namespace
 
 Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
@@ -268,6 +277,7 @@ std::uint64_t sceneKey(const Scene& scene) {
   for (const Texture& t : scene.textures) addTexture(hash, t);
   hash.add(static_cast<std::uint64_t>(scene.lights.size()));
   for (const PunctualLight& l : scene.lights) addLight(hash, l);
+  if (scene.environment) addEnvironment(hash, *scene.environment);
   return hash.value();
 }
 

@@ -101,6 +101,7 @@ class Walk {
   Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, unsigned lobes, const LightChoice& choice,
                    float rays, float weight);
   float emissionWeight(const Hit& hit, const Vec3& direction, float distance, const RoughRay* rough) const;
+  Vec3 environment(const Vec3& direction, const RoughRay* rough) const;
 
   const World& world_;
   const CorrectiveOptions& options_;
@@ -114,6 +115,16 @@ float Walk::emissionWeight(const Hit& hit, const Vec3& direction, float distance
   if (!rough) return 1;
   return powerHeuristic(rough->density,
                         world_.lights().pdf(*rough->choice, hit.triangle, direction, distance));
+}
+
+/// What a ray that leaves the scene brings back.
+Vec3 Walk::environment(const Vec3& direction, const RoughRay* rough) const {
+  const EnvironmentLight* light = world_.lights().environment();
+  if (!light) return Vec3(0);
+  const float weight =
+      rough ? powerHeuristic(rough->density, world_.lights().environmentPdf(*rough->choice, direction))
+            : 1.0f;
+  return light->radiance(direction) * weight;
 }
 
 Vec3 Walk::received(const Leg& leg, int depth, float weight, const RoughRay* rough) {
@@ -149,6 +160,7 @@ Vec3 Walk::received(const Leg& leg, int depth, float weight, const RoughRay* rou
     ray = makeSurface(world_, hit, ray.direction).leave(ray.direction);
     met = world_.intersect(ray, hit, counters_);
   }
+  if (!met) sum += environment(ray.direction, rough) * through;
   return sum;
 }
 

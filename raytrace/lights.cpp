@@ -95,10 +95,22 @@ std::uint32_t AliasTable::sample(float u, float& rest) const {
 Lights::Lights(const core::Scene& scene, const World& world) : scene_(scene), world_(world) {
   addEmissive(scene);
   addPunctual(scene);
+  addEnvironment(scene);
   std::vector<double> powers;
   for (const Group& g : groups_) powers.push_back(g.power);
   groupTable_ = AliasTable(powers);
-  if (groupTable_.empty()) groups_.clear();
+  if (groupTable_.empty()) groups_.clear(), powers.clear();
+  if (environment_) {
+    const double radius = 0.5 * static_cast<double>(scene.bounds.diagonal());
+    powers.push_back(M_PI * radius * radius * environment_->total());
+  }
+  emissionTable_ = AliasTable(powers);
+}
+
+void Lights::addEnvironment(const core::Scene& scene) {
+  if (!scene.environment) return;
+  environment_ = std::make_unique<EnvironmentLight>(scene.environment);
+  if (!environment_->shines()) environment_.reset();
 }
 
 void Lights::addEmissive(const core::Scene& scene) {
@@ -196,10 +208,22 @@ LightChoice Lights::choose(const Vec3& point) const {
   LightChoice choice;
   choice.point = point;
   choice.byPower = groups_.size() > kFewGroups;
-  if (choice.byPower) return choice;
   float sum = 0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) choice.cumulative[i] = sum += estimate(groups_[i], point);
+  if (!choice.byPower) {
+    for (std::size_t i = 0; i < groups_.size(); ++i)
+      choice.cumulative[i] = sum += estimate(groups_[i], point);
+  }
+  if (environment_) choice.environment = environmentShare(choice, sum);
   return choice;
+}
+
+/// By mean irradiance: neither is neglected, since neither estimate knows what stands in the way.
+float Lights::environmentShare(const LightChoice& choice, float others) const {
+  constexpr float kLeast = 0.1f;
+  if (choice.byPower) return 0.5f;
+  if (!(others > 0)) return 1;
+  const auto environment = static_cast<float>(environment_->total() / 4);
+  return std::clamp(environment / (environment + others), kLeast, 1 - kLeast);
 }
 
 float Lights::groupProbability(const LightChoice& choice, std::uint32_t group) const {
@@ -255,13 +279,30 @@ bool Lights::samplePunctual(const Group& group, const Vec3& point, LightSample& 
   return factor > 0;
 }
 
+bool Lights::sampleEnvironment(const Vec2& u, LightSample& out) const {
+  const EnvironmentSample s = environment_->sample(u);
+  out.direction = s.direction;
+  out.distance = core::kInfinity;
+  out.radiance = s.radiance;
+  out.pdf *= s.pdf;
+  out.delta = false;
+  return std::isfinite(out.pdf) && out.pdf > 0;
+}
+
 bool Lights::sample(const LightChoice& choice, float uLight, const Vec2& u, LightSample& out) const {
+  out.pdf = 1;
+  if (choice.environment > 0) {
+    out.pdf = choice.environment;
+    if (uLight < choice.environment || groups_.empty()) return sampleEnvironment(u, out);
+    out.pdf = 1 - choice.environment;
+    uLight = (uLight - choice.environment) / out.pdf;
+  }
   if (groups_.empty()) return false;
   std::uint32_t g = 0;
   float rest = 0;
   if (choice.byPower) {
     g = groupTable_.sample(uLight, rest);
-    out.pdf = groupTable_.probability(g);
+    out.pdf *= groupTable_.probability(g);
   } else {
     const auto n = static_cast<std::uint32_t>(groups_.size());
     const float total = choice.cumulative[n - 1];
@@ -272,7 +313,7 @@ bool Lights::sample(const LightChoice& choice, float uLight, const Vec2& u, Ligh
     const float share = choice.cumulative[g] - below;
     if (!(share > 0)) return false;
     rest = std::clamp((target - below) / share, 0.0f, kBelowOne);
-    out.pdf = share / total;
+    out.pdf *= share / total;
   }
   const Group& group = groups_[g];
   return group.punctual >= 0 ? samplePunctual(group, choice.point, out)
@@ -286,53 +327,73 @@ float Lights::pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3&
   const float cosine = -glm::dot(e.normal, direction);
   const float facing = e.doubleSided ? std::fabs(cosine) : cosine;
   if (!(facing > 0)) return 0;
-  return groupProbability(choice, e.group) * e.choiceInGroup / e.area * t * t / facing;
+  const float group = (1 - choice.environment) * groupProbability(choice, e.group);
+  return group * e.choiceInGroup / e.area * t * t / facing;
 }
 
 EmissionSample Lights::sampleEmission(float uLight, const Vec2& uPosition, const Vec2& uDirection) const {
-  EmissionSample out;
-  if (groups_.empty()) return out;
+  if (emissionTable_.empty()) return {};
   float rest = 0;
-  const std::uint32_t g = groupTable_.sample(uLight, rest);
+  const std::uint32_t g = emissionTable_.sample(uLight, rest);
+  const float probability = emissionTable_.probability(g);
+  if (g == groups_.size()) {
+    const EnvironmentSample from = environment_->sample(uDirection);
+    return emitFromAfar(-from.direction, from.radiance, from.pdf * probability, uPosition);
+  }
   const Group& group = groups_[g];
-  const float probability = groupTable_.probability(g);
-  const float angle = 2 * core::kPi * uDirection.y;
-  if (group.punctual < 0) {
-    const Emissive& e = emissive_[group.first + group.triangles.sample(rest, rest)];
-    const Vec2 b = uniformTriangle(uPosition);
-    const TriangleShape& s = world_.shape(e.triangle);
-    const TriangleRecord& r = world_.record(e.triangle);
-    const CompiledMaterial& m = world_.materialOf(r.object);
-    const bool back = e.doubleSided && rest < 0.5f;
-    out.origin = s.position[0] * (1 - b.x - b.y) + s.position[1] * b.x + s.position[2] * b.y;
-    out.normal = back ? -e.normal : e.normal;
-    out.offset = r.offset;
-    const float sine = std::sqrt(uDirection.x);
-    out.direction = Frame(out.normal)
-                        .toWorld({sine * std::cos(angle), sine * std::sin(angle),
-                                  std::sqrt(std::max(0.0f, 1 - uDirection.x))});
-    Vec3 radiance = m.emission;
-    if (m.emissionTexture) {
-      radiance *=
-          Vec3(m.emissionTexture.sample(r.uv0[0] * (1 - b.x - b.y) + r.uv0[1] * b.x + r.uv0[2] * b.y));
-    }
-    out.flux =
-        radiance * (core::kPi * e.area * (e.doubleSided ? 2.0f : 1.0f) / (probability * e.choiceInGroup));
-    return out;
+  return group.punctual < 0 ? emitFromTriangle(group, probability, rest, uPosition, uDirection)
+                            : emitFromPunctual(group, probability, uPosition, uDirection);
+}
+
+EmissionSample Lights::emitFromTriangle(const Group& group, float probability, float uTriangle,
+                                        const Vec2& uPosition, const Vec2& uDirection) const {
+  EmissionSample out;
+  float rest = 0;
+  const Emissive& e = emissive_[group.first + group.triangles.sample(uTriangle, rest)];
+  const Vec2 b = uniformTriangle(uPosition);
+  const TriangleShape& s = world_.shape(e.triangle);
+  const TriangleRecord& r = world_.record(e.triangle);
+  const CompiledMaterial& m = world_.materialOf(r.object);
+  const bool back = e.doubleSided && rest < 0.5f;
+  out.origin = s.position[0] * (1 - b.x - b.y) + s.position[1] * b.x + s.position[2] * b.y;
+  out.normal = back ? -e.normal : e.normal;
+  out.offset = r.offset;
+  const float sine = std::sqrt(uDirection.x), angle = 2 * core::kPi * uDirection.y;
+  out.direction = Frame(out.normal)
+                      .toWorld({sine * std::cos(angle), sine * std::sin(angle),
+                                std::sqrt(std::max(0.0f, 1 - uDirection.x))});
+  Vec3 radiance = m.emission;
+  if (m.emissionTexture) {
+    radiance *= Vec3(m.emissionTexture.sample(r.uv0[0] * (1 - b.x - b.y) + r.uv0[1] * b.x + r.uv0[2] * b.y));
   }
+  out.flux =
+      radiance * (core::kPi * e.area * (e.doubleSided ? 2.0f : 1.0f) / (probability * e.choiceInGroup));
+  return out;
+}
+
+/// Parallel light of this irradiance at normal incidence (the environment: radiance, and a density per solid
+/// angle) on the disc that the scene's bounding sphere shows it.
+EmissionSample Lights::emitFromAfar(const Vec3& direction, const Vec3& irradiance, float probability,
+                                    const Vec2& uPosition) const {
+  EmissionSample out;
+  const float radius = 0.5f * scene_.bounds.diagonal();
+  const float r = radius * std::sqrt(uPosition.x), a = 2 * core::kPi * uPosition.y;
+  out.direction = direction;
+  out.origin =
+      scene_.bounds.center() + Frame(direction).toWorld({r * std::cos(a), r * std::sin(a), -2 * radius});
+  out.flux = irradiance * (core::kPi * radius * radius / probability);
+  return out;
+}
+
+EmissionSample Lights::emitFromPunctual(const Group& group, float probability, const Vec2& uPosition,
+                                        const Vec2& uDirection) const {
   const core::PunctualLight& light = scene_.lights[group.punctual];
-  if (light.type == core::PunctualLight::Type::directional) {
-    const float radius = 0.5f * scene_.bounds.diagonal();
-    const float r = radius * std::sqrt(uPosition.x), a = 2 * core::kPi * uPosition.y;
-    const Frame frame(light.direction);
-    out.direction = light.direction;
-    out.origin = scene_.bounds.center() + frame.toWorld({r * std::cos(a), r * std::sin(a), -2 * radius});
-    out.flux = light.intensity * (core::kPi * radius * radius / probability);
-    return out;
-  }
+  if (light.type == core::PunctualLight::Type::directional)
+    return emitFromAfar(light.direction, light.intensity, probability, uPosition);
+  EmissionSample out;
   const bool spot = light.type == core::PunctualLight::Type::spot;
   const float lowest = spot ? light.cosOuter : -1.0f;
-  const float cosine = 1 - uDirection.x * (1 - lowest);
+  const float cosine = 1 - uDirection.x * (1 - lowest), angle = 2 * core::kPi * uDirection.y;
   const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
   out.origin = light.position;
   out.direction = Frame(light.direction).toWorld({sine * std::cos(angle), sine * std::sin(angle), cosine});

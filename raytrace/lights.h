@@ -1,6 +1,7 @@
-// Lights: emissive triangles grouped by object, and punctual lights. Importance sampling in two steps (Haber
-// 2001, section 4.3: "importance sampling for area light sources"): a group by its estimated contribution at
-// the point (at most kFewGroups groups) or by power, then a triangle by power, then a point by area.
+// Lights: emissive triangles grouped by object, punctual lights, and the environment. Importance sampling in
+// steps (Haber 2001, section 4.3: "importance sampling for area light sources"): the environment or the rest
+// by estimated irradiance; of the rest a group by its estimated contribution at the point (at most kFewGroups
+// groups) or by power, then a triangle by power, then a point by area.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "raytrace/environment_light.h"
 #include "raytrace/ray.h"
 
 namespace saccade::raytrace {
@@ -37,7 +39,7 @@ class AliasTable {
 
 struct LightSample {
   Vec3 direction{0};   ///< unit, towards the light
-  float distance = 0;  ///< shadow rays end before it: see shadowRay
+  float distance = 0;  ///< shadow rays end before it: see shadowRay; infinite for the environment
   Vec3 radiance{0};    ///< delta: already divided by distance squared (irradiance at normal incidence)
   float pdf = 0;       ///< per solid angle; for a delta light the probability of choosing it
   bool delta = false;
@@ -46,7 +48,7 @@ struct LightSample {
 /// A photon's start. Any thread.
 struct EmissionSample {
   Vec3 origin{0};
-  Vec3 normal{0};  ///< of the emitter, 0 for punctual lights
+  Vec3 normal{0};  ///< of the emitter, 0 for punctual lights and the environment
   Vec3 direction{0, -1, 0};
   Vec3 flux{0};  ///< watts this photon stands for when one photon is emitted: divide by the number of photons
   float offset = 0;  ///< for offsetOrigin; 0 for punctual lights
@@ -57,6 +59,7 @@ struct LightChoice {
   static constexpr int kFewGroups = 16;
   Vec3 point{0};
   float cumulative[kFewGroups] = {};
+  float environment = 0;  ///< probability of sampling the environment instead of the groups
   bool byPower = false;
 };
 
@@ -67,12 +70,14 @@ class Lights {
   /// `world`'s records must be filled; sets their `light` through the span of indices returned by lightOf().
   Lights(const core::Scene& scene, const World& world);
 
-  bool empty() const { return groups_.empty(); }
+  bool empty() const { return groups_.empty() && !environment_; }
   bool hasPunctual() const { return hasPunctual_; }
   /// Emissive triangles, the order of TriangleRecord::light.
   std::size_t emissiveCount() const { return emissive_.size(); }
   std::uint32_t emissiveTriangle(std::size_t i) const { return emissive_[i].triangle; }
-  double totalPower() const { return groupTable_.total(); }  ///< watts, luminance-weighted
+  double totalPower() const { return emissionTable_.total(); }  ///< watts, luminance-weighted
+  /// Null where the scene has none or a black one.
+  const EnvironmentLight* environment() const { return environment_.get(); }
 
   LightChoice choose(const Vec3& point) const;
   /// False when the sample carries no light (behind, grazing, no area).
@@ -80,6 +85,10 @@ class Lights {
   /// Density per solid angle with which sample() would have made a ray that hit this world triangle at
   /// distance t with unit direction. 0 for triangles that are no light or face away.
   float pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3& direction, float t) const;
+  /// The same for a ray that left the scene: only where there is an environment.
+  float environmentPdf(const LightChoice& choice, const Vec3& direction) const {
+    return choice.environment * environment_->pdf(direction);
+  }
 
   EmissionSample sampleEmission(float uLight, const Vec2& uPosition, const Vec2& uDirection) const;
 
@@ -103,18 +112,30 @@ class Lights {
   };
   void addEmissive(const core::Scene& scene);
   void addPunctual(const core::Scene& scene);
+  void addEnvironment(const core::Scene& scene);
   float estimate(const Group& group, const Vec3& point) const;
+  bool sampleEnvironment(const Vec2& u, LightSample& out) const;
   float groupProbability(const LightChoice& choice, std::uint32_t group) const;
   bool sampleTriangle(const Group& group, const Vec3& point, float uTriangle, const Vec2& u,
                       LightSample& out) const;
   bool samplePunctual(const Group& group, const Vec3& point, LightSample& out) const;
+  float environmentShare(const LightChoice& choice, float others) const;
+  // `probability`: with which it came to be asked; the flux is divided by it.
+  EmissionSample emitFromTriangle(const Group& group, float probability, float uTriangle,
+                                  const Vec2& uPosition, const Vec2& uDirection) const;
+  EmissionSample emitFromPunctual(const Group& group, float probability, const Vec2& uPosition,
+                                  const Vec2& uDirection) const;
+  EmissionSample emitFromAfar(const Vec3& direction, const Vec3& irradiance, float probability,
+                              const Vec2& uPosition) const;
 
   const core::Scene& scene_;
   const World& world_;
   std::vector<Emissive> emissive_;
   std::vector<Group> groups_;
   bool hasPunctual_ = false;
-  AliasTable groupTable_;  ///< by power
+  AliasTable groupTable_;                          ///< by power
+  std::unique_ptr<EnvironmentLight> environment_;  ///< null: none that shines
+  AliasTable emissionTable_;                       ///< by power; after the groups the environment
 };
 
 /// The shadow ray from a surface point to a light sample; it ends before the light.

@@ -75,8 +75,12 @@ class Path {
   Vec3 radiance(Ray ray) {
     Hit hit;
     int bounce = 0, layers = 0;
-    while (bounce == 0 ? world_.intersectVisible(ray, hit, counters_)
-                       : world_.intersect(ray, hit, counters_)) {
+    while (true) {
+      if (!(bounce == 0 ? world_.intersectVisible(ray, hit, counters_)
+                        : world_.intersect(ray, hit, counters_))) {
+        addEnvironment(ray.direction);
+        break;
+      }
       const Vec3 direction = ray.direction;
       travelled_ += hit.t;
       const Surface surface = makeSurface(world_, hit, direction);
@@ -102,6 +106,14 @@ class Path {
   float emissionWeight(const Hit& hit, const Vec3& direction) const {
     if (!(density_ > 0)) return 1;
     return powerHeuristic(density_, world_.lights().pdf(choice_, hit.triangle, direction, travelled_));
+  }
+
+  void addEnvironment(const Vec3& direction) {
+    const EnvironmentLight* environment = world_.lights().environment();
+    if (!environment) return;
+    const float weight =
+        density_ > 0 ? powerHeuristic(density_, world_.lights().environmentPdf(choice_, direction)) : 1.0f;
+    sum_ += throughput_ * environment->radiance(direction) * weight;
   }
 
   /// Direct light by light sampling, then the next ray. False when the path ends.

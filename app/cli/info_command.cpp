@@ -34,6 +34,7 @@ Json describe(const core::Scene& scene, const core::Plan& plan) {
   json["textures"] = scene.textures.size();
   json["lights"] = lightCount(scene);
   json["default_light"] = scene.defaultLight;
+  json["environment"] = scene.environment ? Json(scene.environment->name) : Json(nullptr);
   json["cameras"] = Json::array();
   for (const core::Camera& camera : scene.cameras) {
     json["cameras"].push_back({{"name", camera.name},

@@ -25,6 +25,24 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
                   "panel:at=x,y,z,size=w,h,radiance=r,g,b")
       ->allow_extra_args(false)  // or it would swallow the scene's name behind it
       ->group(group);
+  command
+      .add_option("--environment", o.load.environment,
+                  "Light the scene from all around by this equirectangular image, OpenEXR or Radiance .hdr; "
+                  "it shows behind the scene")
+      ->option_text("FILE")
+      ->group(group);
+  command
+      .add_option("--environment-rotation", o.load.environmentOptions.rotationDegrees,
+                  "Turn the environment about the vertical axis: degrees, counter-clockwise seen from above "
+                  "(0: its middle lies along -Z)")
+      ->option_text("DEGREES [0]")
+      ->group(group);
+  command
+      .add_option("--environment-scale", o.load.environmentOptions.scale,
+                  "Multiply the environment's radiance by this")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("FACTOR [1]")
+      ->group(group);
   command.add_option("--unit-scale", o.load.unitScale, "Metres per unit of the file")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()

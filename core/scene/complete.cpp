@@ -86,7 +86,7 @@ void assignIds(Scene& scene, float threshold) {
 
 /// No light was asked for, and none is certain to do: whether emitters do is for onlyDimEmitters to say.
 bool mayBeDark(const Scene& scene, const LoadOptions& options) {
-  return options.lights.empty() && scene.lights.empty() &&
+  return options.lights.empty() && scene.lights.empty() && !scene.environment &&
          std::any_of(scene.objects.begin(), scene.objects.end(),
                      [&](const Object& o) { return !materialOf(scene, o).unlit; });
 }
@@ -101,8 +101,8 @@ void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool lig
     addDefaultLight(scene, around);
     scene.defaultLight = true;
     scene.warnings.emplace_back(
-        "the scene has no light that one would see by: a default light panel was added; --light adds another "
-        "instead");
+        "the scene has no light that one would see by: a default light panel was added; --light or "
+        "--environment adds another instead");
   }
 }
 

@@ -51,6 +51,11 @@ Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
   LoadBudget budget(options.limits, file.filename().string());
   try {
     Scene scene = parse(file, options, budget);
+    if (!options.environment.empty()) {
+      LoadBudget own(options.limits, options.environment);
+      scene.environment = std::make_shared<const Environment>(
+          readEnvironment(options.environment, options.environmentOptions, own, scene.warnings));
+    }
     completeScene(scene, options, &budget);
     return scene;
   } catch (const std::bad_alloc&) {

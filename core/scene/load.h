@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/load_budget.h"
+#include "core/scene/environment.h"
 #include "core/scene/scene.h"
 
 namespace saccade::core {
@@ -18,6 +19,8 @@ struct LoadOptions {
   float nonDiffuseThreshold = 0.1f;  ///< --nondiffuse
   std::vector<std::string> lights;   ///< --light TYPE:key=value,... (see parseLight)
   LoadLimits limits;                 ///< what reading the file may cost
+  std::string environment;           ///< --environment FILE; empty = none
+  EnvironmentOptions environmentOptions;
 };
 
 /// Reads a scene, completes it (normals, clusters, ids, hierarchy, default light and camera, plan input) and

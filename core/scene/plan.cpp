@@ -95,6 +95,13 @@ void sizeLightmap(const Scene& scene, const Census& c, Plan& plan) {
   plan.texelSizeMetres = static_cast<float>(std::sqrt(c.area / kAtlasFill) / plan.lightmapSize);
 }
 
+std::string describe(const Environment& e) {
+  const ImageRgb& image = e.radiance;
+  return e.name + ", " + std::to_string(image.width()) + "x" + std::to_string(image.height()) +
+         ", turned by " + number(static_cast<double>(glm::degrees(e.rotation))) +
+         " degrees: lights the scene and shows behind it";
+}
+
 void describe(const Scene& scene, const Census& c, Plan& plan) {
   const auto line = [&](const char* stage, bool on, const std::string& yes, const std::string& no) {
     plan.lines.push_back({stage, on, on ? yes : no});
@@ -134,8 +141,11 @@ void describe(const Scene& scene, const Census& c, Plan& plan) {
            number(static_cast<double>(plan.texelSizeMetres)) + " m for " + number(c.area) + " m2 of surface",
        "no surface");
   const std::size_t lights = scene.lights.size() + c.emitting;
-  line("light sampling", scene.lights.size() > 1 || c.emitting > 0,
-       counted(scene.lights.size(), "punctual light") + ", " + counted(c.emitting, "emitting mesh object"),
+  line("environment", scene.environment != nullptr, scene.environment ? describe(*scene.environment) : "",
+       "none: rays that miss everything are black");
+  line("light sampling", scene.lights.size() > 1 || c.emitting > 0 || scene.environment,
+       counted(scene.lights.size(), "punctual light") + ", " + counted(c.emitting, "emitting mesh object") +
+           (scene.environment ? ", the environment" : ""),
        lights == 1 ? "one punctual light: nothing to choose" : "no light shines");
   line("default light", scene.defaultLight, "the scene has none", "the scene lights itself");
   line("default camera", scene.defaultCamera, "the scene has none",

@@ -43,10 +43,16 @@ class TexelSampler {
 };
 
 /// Calls visit(uLight, factor): numbers for Lights::sample and the factor its result is to be taken by, so
-/// that the sum is an estimate of all lights. Few lights are all taken, at a place in each that uLight says.
-/// Unused entries of `cumulative` are 0, so it falls where the groups end.
+/// that the sum is an estimate of all lights. The environment and few lights are all taken, at a place in
+/// each that uLight says. Unused entries of `cumulative` are 0, so it falls where the groups end.
 template <class Visit>
-void forEachLight(const LightChoice& choice, float uLight, Visit&& visit) {
+void forEachLight(const LightChoice& choice, float uLight, Visit&& take) {
+  const float environment = choice.environment;
+  if (environment > 0) take(uLight * environment, environment);
+  if (environment == 1) return;
+  const auto visit = [&](float place, float factor) {
+    take(environment + place * (1 - environment), factor * (1 - environment));
+  };
   constexpr int kAllOf = 4;
   const auto groups = std::find_if(choice.cumulative + 1, choice.cumulative + LightChoice::kFewGroups,
                                    [&](const float& c) { return c < *(&c - 1); });
@@ -113,7 +119,13 @@ Vec3 sampleCosine(const World& world, const Receiver& at, const Vec2& u, RayCoun
   Ray ray = at.surface.leave(direction);
   for (int sheet = 0; sheet < kMaxSheets && cosine > 0 && up > 0; ++sheet) {
     Hit hit;
-    if (!world.intersect(ray, hit, counters)) break;
+    if (!world.intersect(ray, hit, counters)) {
+      const EnvironmentLight* environment = world.lights().environment();
+      if (!environment) break;
+      const float pdf = world.lights().environmentPdf(at.choice, direction);
+      return environment->radiance(direction) *
+             (free * (1 - lightWeight(pdf, up / core::kPi)) * core::kPi * cosine / up);
+    }
     const Surface met = makeSurface(world, hit, direction);
     if (world.record(hit.triangle).light >= 0) {
       const float distance = glm::length(met.position - at.surface.position);
@@ -136,7 +148,7 @@ Vec3 sampleDirect(const World& world, const TexelMap& texels, std::size_t texel,
   const Receiver at(world, point, layer == 0);
   Vec3 sum =
       sampleLights(world, at, random.at(index, kLight), random.pair(index, kLightU, kLightV), counters);
-  if (index % kCosineEvery == 0 && world.lights().emissiveCount() > 0) {
+  if (index % kCosineEvery == 0 && (world.lights().emissiveCount() > 0 || world.lights().environment())) {
     sum += sampleCosine(world, at, random.pair(index, kCosineU, kCosineV), counters) *
            static_cast<float>(kCosineEvery);
   }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "core/scene/texture_transform.h"
+#include "render/base/background.h"
 #include "render/base/features.h"
 #include "render/base/frustum.h"
 #include "render/base/geometry.h"
@@ -67,6 +69,7 @@ struct BaseRenderer::State {
   GlTexture maps;
   int mapLayers = 0;
   std::map<Features, Program> programs;
+  std::optional<Background> background;  ///< where the scene has an environment
   Target target;
   SnapshotPool pool;
   std::vector<char> visible;  ///< by object
@@ -215,6 +218,7 @@ void BaseRenderer::State::draw(const core::View& view) {
   }
   stats.objectsDrawn = order.size();
   stats.objectsCulled = geometry.items().size() - order.size();
+  if (background) background->draw(view);
   gl.BindVertexArray(0);
 }
 
@@ -223,6 +227,7 @@ BaseRenderer::BaseRenderer(GlContext& context, const core::Scene& scene) {
   state_ = std::make_unique<State>(context, scene);
   for (const core::Object& object : scene.objects) state_->constants.push_back(constantsOf(scene, object));
   state_->uploadTextures();
+  if (scene.environment) state_->background.emplace(state_->gl, *scene.environment, context.maxSize());
 }
 
 BaseRenderer::~BaseRenderer() { state_->context.makeCurrent(); }

@@ -8,7 +8,8 @@
 // Radiance: emission (front side, unless double-sided) + baseColor * texture * vertex colour
 //   * (1 - metallic) * (1 - transmission) * baseDiffuseFactor / pi * irradiance
 //   (core/scene/specular_albedo.h);
-// alphaMode blend: times coverage; mask: nothing where coverage < cutoff; unlit: baseColor.
+// alphaMode blend: times coverage; mask: nothing where coverage < cutoff; unlit: baseColor. Where nothing is
+// drawn, the scene's environment shows (ID 0, depth 1), or black.
 #pragma once
 
 #include <cstddef>
