@@ -82,19 +82,27 @@ Vec3 environmentDirection(const Environment& environment, const Vec2& uv) {
   return {sine * std::sin(longitude), std::cos(colatitude), -sine * std::cos(longitude)};
 }
 
-Vec3 environmentRadiance(const Environment& environment, const Vec3& direction) {
-  const ImageRgb& image = environment.radiance;
-  const int width = image.width(), height = image.height();
-  const Vec2 uv = environmentUv(environment, direction);
+EnvironmentTexels environmentTexels(const Environment& environment, const Vec2& uv) {
+  const int width = environment.radiance.width(), height = environment.radiance.height();
   const float x = uv.x * static_cast<float>(width) - 0.5f;
   const float y = std::clamp(uv.y * static_cast<float>(height) - 0.5f, 0.0f, static_cast<float>(height - 1));
   const float left = std::floor(x), top = std::floor(y);
-  const float fx = x - left, fy = y - top;
-  const int x0 = left < 0 ? width - 1 : static_cast<int>(left), x1 = x0 + 1 < width ? x0 + 1 : 0;
-  const int y0 = static_cast<int>(top), y1 = std::min(y0 + 1, height - 1);
-  const Vec3 upper = image.at(x0, y0) * (1 - fx) + image.at(x1, y0) * fx;
-  const Vec3 lower = image.at(x0, y1) * (1 - fx) + image.at(x1, y1) * fx;
-  return upper * (1 - fy) + lower * fy;
+  EnvironmentTexels t;
+  t.x0 = left < 0 ? width - 1 : static_cast<int>(left);
+  t.x1 = t.x0 + 1 < width ? t.x0 + 1 : 0;
+  t.y0 = static_cast<int>(top);
+  t.y1 = std::min(t.y0 + 1, height - 1);
+  t.fx = x - left;
+  t.fy = y - top;
+  return t;
+}
+
+Vec3 environmentRadianceAt(const Environment& environment, const Vec2& uv) {
+  const ImageRgb& image = environment.radiance;
+  const EnvironmentTexels t = environmentTexels(environment, uv);
+  const Vec3 upper = image.at(t.x0, t.y0) * (1 - t.fx) + image.at(t.x1, t.y0) * t.fx;
+  const Vec3 lower = image.at(t.x0, t.y1) * (1 - t.fx) + image.at(t.x1, t.y1) * t.fx;
+  return upper * (1 - t.fy) + lower * t.fy;
 }
 
 }  // namespace saccade::core

@@ -30,7 +30,18 @@ Environment readEnvironment(const std::filesystem::path& file, const Environment
 Vec2 environmentUv(const Environment& environment, const Vec3& direction);
 /// The inverse: unit.
 Vec3 environmentDirection(const Environment& environment, const Vec2& uv);
+
+/// The four texels around a place in the picture and the weights of the second ones.
+struct EnvironmentTexels {
+  int x0, x1, y0, y1;
+  float fx, fy;  ///< [0, 1]
+};
+EnvironmentTexels environmentTexels(const Environment& environment, const Vec2& uv);
+/// Radiance at a place, W/m^2/sr. Any thread.
+Vec3 environmentRadianceAt(const Environment& environment, const Vec2& uv);
 /// Radiance from a direction (any length but 0), W/m^2/sr. Any thread.
-Vec3 environmentRadiance(const Environment& environment, const Vec3& direction);
+inline Vec3 environmentRadiance(const Environment& environment, const Vec3& direction) {
+  return environmentRadianceAt(environment, environmentUv(environment, direction));
+}
 
 }  // namespace saccade::core

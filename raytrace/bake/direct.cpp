@@ -35,6 +35,10 @@ class TexelSampler {
     return static_cast<float>((shift_[d] + index * kStep[d]) >> 8) * 0x1p-24f;
   }
   Vec2 pair(std::uint32_t index, Dimension u, Dimension v) const { return {at(index, u), at(index, v)}; }
+  /// Where the environment is sampled: far from smooth, with a sun in it, so even in this pair above all.
+  Vec2 environment(std::uint32_t index) const {
+    return core::PixelSampler(shift_[kLightU], shift_[kLightV], index, shift_[kLight]).next2D();
+  }
 
  private:
   static constexpr std::uint32_t kStep[kDimensions] = {3958238938u, 3647910312u, 3361911662u, 3098335500u,
@@ -42,16 +46,15 @@ class TexelSampler {
   std::uint32_t shift_[kDimensions];
 };
 
-/// Calls visit(uLight, factor): numbers for Lights::sample and the factor its result is to be taken by, so
-/// that the sum is an estimate of all lights. The environment and few lights are all taken, at a place in
+/// Calls take(uLight, factor): numbers for Lights::sample and the factor its result is to be taken by, so
+/// that the sum is an estimate of all lights but the environment. Few lights are all taken, at a place in
 /// each that uLight says. Unused entries of `cumulative` are 0, so it falls where the groups end.
 template <class Visit>
 void forEachLight(const LightChoice& choice, float uLight, Visit&& take) {
-  const float environment = choice.environment;
-  if (environment > 0) take(uLight * environment, environment);
-  if (environment == 1) return;
+  const float others = 1 - choice.environment;
+  if (others == 0) return;
   const auto visit = [&](float place, float factor) {
-    take(environment + place * (1 - environment), factor * (1 - environment));
+    take(choice.environment + place * others, factor * others);
   };
   constexpr int kAllOf = 4;
   const auto groups = std::find_if(choice.cumulative + 1, choice.cumulative + LightChoice::kFewGroups,
@@ -110,6 +113,17 @@ Vec3 sampleLights(const World& world, const Receiver& at, float uLight, const Ve
   return sum;
 }
 
+/// A shadow ray to the environment.
+Vec3 sampleEnvironment(const World& world, const Receiver& at, const EnvironmentLight& environment,
+                       const Vec2& u, RayCounters& counters) {
+  const EnvironmentSample s = environment.sample(u);
+  const float cosine = at.cosine(s.direction);
+  if (!(cosine > 0) || !(s.pdf > 0)) return Vec3(0);
+  const float free = world.transmittance(at.surface.leave(s.direction), counters);
+  const float weight = lightWeight(s.pdf, glm::dot(s.direction, at.surface.ng) / core::kPi);
+  return s.radiance * (cosine * free * weight / s.pdf);
+}
+
 /// A ray by the cosine that counts where it meets a light.
 Vec3 sampleCosine(const World& world, const Receiver& at, const Vec2& u, RayCounters& counters) {
   const float sine = std::sqrt(u.x), angle = 2 * core::kPi * u.y, up = std::sqrt(std::max(0.0f, 1 - u.x));
@@ -122,9 +136,8 @@ Vec3 sampleCosine(const World& world, const Receiver& at, const Vec2& u, RayCoun
     if (!world.intersect(ray, hit, counters)) {
       const EnvironmentLight* environment = world.lights().environment();
       if (!environment) break;
-      const float pdf = world.lights().environmentPdf(at.choice, direction);
-      return environment->radiance(direction) *
-             (free * (1 - lightWeight(pdf, up / core::kPi)) * core::kPi * cosine / up);
+      const float weight = 1 - lightWeight(environment->pdf(direction), up / core::kPi);
+      return environment->radiance(direction) * (free * weight * core::kPi * cosine / up);
     }
     const Surface met = makeSurface(world, hit, direction);
     if (world.record(hit.triangle).light >= 0) {
@@ -148,7 +161,9 @@ Vec3 sampleDirect(const World& world, const TexelMap& texels, std::size_t texel,
   const Receiver at(world, point, layer == 0);
   Vec3 sum =
       sampleLights(world, at, random.at(index, kLight), random.pair(index, kLightU, kLightV), counters);
-  if (index % kCosineEvery == 0 && (world.lights().emissiveCount() > 0 || world.lights().environment())) {
+  const EnvironmentLight* environment = world.lights().environment();
+  if (environment) sum += sampleEnvironment(world, at, *environment, random.environment(index), counters);
+  if (index % kCosineEvery == 0 && (world.lights().emissiveCount() > 0 || environment)) {
     sum += sampleCosine(world, at, random.pair(index, kCosineU, kCosineV), counters) *
            static_cast<float>(kCosineEvery);
   }

@@ -349,5 +349,64 @@ TEST(RayLog, HoldsEveryRayAndReplaysTheirHits) {
   EXPECT_GT(hits, 100u);
 }
 
+/// Red ahead (-Z), green behind, blue above.
+std::shared_ptr<const core::Environment> colouredSky() {
+  core::Environment e;
+  e.radiance = core::ImageRgb(32, 16);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x)
+      e.radiance.at(x, y) = y < 4 ? Vec3(0, 0, 3) : x >= 8 && x < 24 ? Vec3(1, 0, 0) : Vec3(0, 2, 0);
+  }
+  return std::make_shared<const core::Environment>(std::move(e));
+}
+
+TEST(Corrective, ReflectionsAndRefractionsThatMissShowTheEnvironment) {
+  SceneMaker m;
+  m.quad(m.material(tests::metalMaterial(Vec3(1), 0)), 1, {-1, -0.3f, -2}, {1, 0, 0}, {0, 1.2f, 0});
+  m.quad(m.material(tests::glassMaterial(1, 0)), 2, {0, -0.3f, -2}, {1, 0, 0}, {0, 1.2f, 0});
+  core::Material veil = tests::diffuseMaterial(Vec3(0));
+  veil.alphaMode = core::AlphaMode::blend;
+  veil.alpha = 0.25f;
+  m.quad(m.material(veil), 3, {-1, -1, -2}, {2, 0, 0}, {0, 0.6f, 0});
+  m.scene.environment = colouredSky();
+  const World world(m.scene, planOf());
+  const auto frame = frameOf(world, cameraAt({0, 0, 0}, {0, 0, -1}), 32, 32);
+  const CorrectiveTracer tracer(world, {});
+  RayCounters counters;
+  std::map<std::uint32_t, int> seen;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const std::uint32_t id = frame->idAt(x, y);
+      if (id == 0) continue;
+      const Vec3 c = tracer.trace(*frame, x, y, 7, counters).correction;
+      const Vec3 truth = id == 1 ? Vec3(0, 2, 0) : Vec3(id == 3 ? 0.75f : 1.0f, 0, 0);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], truth[k], 1e-4) << id << " at " << x << ", " << y;
+      ++seen[id];
+    }
+  }
+  EXPECT_EQ(seen.size(), 3u);
+}
+
+TEST(Corrective, RoughReflectionsOfTheEnvironmentAgreeWithPaths) {
+  for (const float roughness : {0.15f, 0.4f, 0.9f}) {
+    SceneMaker m;
+    m.quad(m.material(tests::metalMaterial(Vec3(0.9f), roughness)), 1, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
+    m.scene.environment = colouredSky();
+    const World world(m.scene, planOf());
+    const auto frame = frameOf(world, cameraAt({0, 0, 0}, {0, 0, -1}), 9, 9);
+    CorrectiveOptions options;
+    options.samplesPerPixel = 20000;
+    RayCounters counters;
+    const Vec3 c = CorrectiveTracer(world, options).trace(*frame, 4, 4, 7, counters).correction;
+    PathOptions paths;
+    paths.samplesPerPixel = 40000;
+    const Vec3 direction = frame->view.direction({4.5f, 4.5f});
+    const Vec3 l =
+        pathRadiance(world, {Vec3(0), glm::normalize(direction), 0, core::kInfinity}, paths, counters);
+    EXPECT_GT(l.y, 0.5f);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], l[k], 0.015f) << roughness;
+  }
+}
+
 }  // namespace
 }  // namespace saccade::raytrace
