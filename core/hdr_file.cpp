@@ -157,16 +157,18 @@ Vec3 decode(const Rgbe& p, double scale) {
 
 }  // namespace
 
-ImageRgb decodeHdr(std::span<const std::uint8_t> bytes, const std::string& name) {
+ImageRgb decodeHdr(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget) {
   Reader in(bytes, name);
   const Header header = parseHeader(in, name);
   const bool rows = header.slowAxis == 'Y';
   const auto slow = static_cast<int>(header.slow), fast = static_cast<int>(header.fast);
+  budget.charge(static_cast<std::uint64_t>(header.slow * header.fast), sizeof(Vec3), name);
   ImageRgb image(rows ? fast : slow, rows ? slow : fast);
   std::vector<Rgbe> line(static_cast<std::size_t>(fast));
   // -Y counts downwards and +X to the right: the way of our images.
   const bool slowTurned = (header.slowSign == '-') != rows, fastTurned = (header.fastSign == '-') == rows;
   for (int s = 0; s < slow; ++s) {
+    if (s % codecs::kRowsPerLook == 0) budget.checkTime();
     if (in.startsNewScanline(fast)) {
       readNewScanline(in, line);
     } else {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/image.h"
+#include "core/load_budget.h"
 
 namespace saccade::core {
 
@@ -14,7 +15,8 @@ namespace saccade::core {
 /// orders of its axes; row 0 of the result is the top. EXPOSURE lines are divided out: the result is what was
 /// photographed, W/m^2/sr. Throws core::Error naming `name`: wrong magic, XYZE, a size of 0, one beyond
 /// kMaxImagePixels or one that the bytes cannot hold (checked before anything is allocated), truncated or
-/// overrunning scanlines. Bytes behind the picture are ignored. Any thread.
-ImageRgb decodeHdr(std::span<const std::uint8_t> bytes, const std::string& name);
+/// overrunning scanlines. The pixels' bytes stay charged to `budget`. Bytes behind the picture are ignored.
+/// Any thread.
+ImageRgb decodeHdr(std::span<const std::uint8_t> bytes, const std::string& name, LoadBudget& budget);
 
 }  // namespace saccade::core

@@ -13,14 +13,19 @@ namespace saccade::core {
 namespace {
 
 /// By the first bytes: names lie.
-ImageRgb readRadiance(const std::filesystem::path& file) {
+ImageRgb readRadiance(const std::filesystem::path& file, LoadBudget& budget) {
   std::error_code failed;
   if (!std::filesystem::exists(file, failed)) throw Error(file.string() + ": no such file (--environment)");
   if (!std::filesystem::is_regular_file(file, failed)) throw Error(file.string() + ": not a regular file");
   std::array<char, 4> head{};
   std::ifstream(file, std::ios::binary).read(head.data(), head.size());
-  if (head == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return readExr(file);
-  if (head[0] == '#' && head[1] == '?') return decodeHdr(readWholeFile(file), file.string());
+  if (head == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return readExr(file, budget);
+  if (head[0] == '#' && head[1] == '?') {
+    const std::vector<std::uint8_t> bytes = readWholeFile(file, budget);
+    ImageRgb image = decodeHdr(bytes, file.string(), budget);
+    budget.release(bytes.size());
+    return image;
+  }
   throw Error(file.string() + ": --environment takes an OpenEXR (.exr) or Radiance (.hdr) image");
 }
 
@@ -42,14 +47,14 @@ std::uint64_t scaleAndRepair(ImageRgb& image, float scale) {
 }  // namespace
 
 Environment readEnvironment(const std::filesystem::path& file, const EnvironmentOptions& options,
-                            Warnings& warnings) {
+                            LoadBudget& budget, Warnings& warnings) {
   if (!(options.scale >= 0 && options.scale < kInfinity))
     throw UsageError("--environment-scale must be a number of at least 0");
   if (!std::isfinite(options.rotationDegrees))
     throw UsageError("--environment-rotation must be a number of degrees");
   Environment environment;
   environment.name = file.string();
-  environment.radiance = readRadiance(file);
+  environment.radiance = readRadiance(file, budget);
   const int width = environment.radiance.width(), height = environment.radiance.height();
   if (std::int64_t{width} * height > kMaxEnvironmentPixels) {
     throw Error(file.string() + ": an environment of " + std::to_string(width) + " x " +

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "core/load_budget.h"
 #include "core/scene/scene.h"
 
 namespace saccade::core {
@@ -21,10 +22,10 @@ struct EnvironmentOptions {
 
 /// Reads an equirectangular OpenEXR or Radiance .hdr image, told apart by content. Texels that are NaN or
 /// negative become 0, those beyond kLargestEnvironmentRadiance are clamped; what was repaired is counted in
-/// `warnings`. Throws core::Error naming the file and what to do, UsageError for options out of range. Any
-/// thread.
+/// `warnings`; the pixels' bytes stay charged to `budget`. Throws core::Error naming the file and what to do,
+/// UsageError for options out of range. Any thread.
 Environment readEnvironment(const std::filesystem::path& file, const EnvironmentOptions& options,
-                            Warnings& warnings);
+                            LoadBudget& budget, Warnings& warnings);
 
 /// Where a direction (any length but 0) falls in the picture, [0, 1]^2, v downwards. NaN gives (0, 0).
 Vec2 environmentUv(const Environment& environment, const Vec3& direction);

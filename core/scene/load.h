@@ -13,9 +13,9 @@
 namespace saccade::core {
 
 struct LoadOptions {
-  float unitScale = 1;  ///< file units to metres
-  int scene = -1;       ///< glTF scene index; -1 = the file's default
-  double timeSeconds = 0;  ///< at which animations are shown; finite, >= 0
+  float unitScale = 1;               ///< file units to metres
+  int scene = -1;                    ///< glTF scene index; -1 = the file's default
+  double timeSeconds = 0;            ///< at which animations are shown; finite, >= 0
   float nonDiffuseThreshold = 0.1f;  ///< --nondiffuse
   std::vector<std::string> lights;   ///< --light TYPE:key=value,... (see parseLight)
   LoadLimits limits;                 ///< what reading the file may cost

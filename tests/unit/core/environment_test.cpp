@@ -23,6 +23,12 @@ Environment of(ImageRgb image, float degrees = 0) {
   return e;
 }
 
+Environment readEnvironment(const std::filesystem::path& file, const EnvironmentOptions& options,
+                            Warnings& warnings) {
+  LoadBudget budget(LoadLimits{}, file.string());
+  return core::readEnvironment(file, options, budget, warnings);
+}
+
 void expectNear(const Vec3& a, const Vec3& b, float tolerance) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << c;
 }

@@ -21,6 +21,11 @@ Bytes header(const std::string& size, const std::string& lines = "FORMAT=32-bit_
   return {text.begin(), text.end()};
 }
 
+ImageRgb decodeHdr(const Bytes& bytes, const std::string& name) {
+  LoadBudget budget(LoadLimits{}, name);
+  return core::decodeHdr(bytes, name, budget);
+}
+
 std::string messageOf(const Bytes& bytes) {
   try {
     decodeHdr(bytes, "skies/noon.hdr");
@@ -175,6 +180,18 @@ TEST(Hdr, RefusesWhatIsWrongNamingIt) {
   append(endless, {5, 5, 5, 128});
   for (int i = 0; i < 6; ++i) append(endless, {1, 1, 1, 0});
   refused(endless, "not there");
+}
+
+TEST(Hdr, PixelsAreChargedBeforeTheyAreAllocated) {
+  Bytes file = header("-Y 1000 +X 16384");  // each scanline is one pixel and a run
+  for (int y = 0; y < 1000; ++y) append(file, {5, 5, 5, 128, 1, 1, 1, 255, 1, 1, 1, 63});
+  LoadBudget budget({.memoryBytes = 100 << 20}, "x");
+  try {
+    core::decodeHdr(file, "x", budget);
+    ADD_FAILURE() << "was read";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("--max-memory"), std::string::npos) << e.what();
+  }
 }
 
 TEST(Hdr, NoBytesMakeItCrash) {
