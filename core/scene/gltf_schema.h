@@ -45,6 +45,13 @@ struct PropertyRule {
   /// that the default holds) where the range is open or a list.
   const char* mended = nullptr;
 
+  /// A changed copy. Defined ahead of its users: clang needs its body while it evaluates them.
+  template <class Change>
+  constexpr PropertyRule with(Change change) const {
+    PropertyRule copy = *this;
+    change(copy);
+    return copy;
+  }
   constexpr PropertyRule must() const {
     return with([](PropertyRule& r) { r.required = true; });
   }
@@ -62,14 +69,6 @@ struct PropertyRule {
   }
   constexpr PropertyRule mend(const char* noun) const {
     return with([=](PropertyRule& r) { r.mended = noun; });
-  }
-
- private:
-  template <class Change>
-  constexpr PropertyRule with(Change change) const {
-    PropertyRule copy = *this;
-    change(copy);
-    return copy;
   }
 };
 
