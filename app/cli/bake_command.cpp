@@ -49,7 +49,7 @@ void addBakeCommand(CLI::App& program, Run& run) {
   command->add_option("--photons", o->scene.photons, "Particles to trace, instead of what the quality says");
   command->add_option(
       "--import", o->importFolder,
-      "Folder of another program's lightmaps, NODE.lightmap.jpg (or .png, .exr): nodes of that name "
+      "Folder of another program's lightmaps, NODE.lightmap.jpg (or .png, .hdr, .exr): nodes of that name "
       "take their light from it, through their second UV set; the rest is baked");
   command
       ->add_option("--import-scale", o->importScale,

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <set>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hdr_file.h"
 #include "core/image_io.h"
 #include "raytrace/bake/charts.h"
 
@@ -26,7 +28,7 @@ std::string lowerExtension(const fs::path& file) {
 }
 
 bool isImage(const fs::path& file) {
-  constexpr std::array kExtensions = {".jpg", ".jpeg", ".png", ".exr"};
+  constexpr std::array kExtensions = {".jpg", ".jpeg", ".png", ".hdr", ".exr"};
   const std::string extension = lowerExtension(file);
   return std::any_of(kExtensions.begin(), kExtensions.end(),
                      [&](const char* known) { return extension == known; });
@@ -50,19 +52,28 @@ std::map<std::string, std::vector<fs::path>> imagesByNode(const fs::path& folder
   return out;
 }
 
-core::ImageRgb readIrradiance(const fs::path& file, float scale) {
-  core::ImageRgb out;
-  if (lowerExtension(file) == ".exr") {
-    out = core::readExr(file);
-  } else {
-    const core::ImageRgba8 encoded = core::readImage8(file);
-    out = core::ImageRgb(encoded.width(), encoded.height());
-    std::array<float, 256> linear;
-    for (std::size_t i = 0; i < linear.size(); ++i)
-      linear[i] = core::decodeSrgb(static_cast<float>(i) / 255.0f);
-    std::transform(encoded.pixels().begin(), encoded.pixels().end(), out.pixels().begin(),
-                   [&](const core::Rgba8& p) { return core::Vec3(linear[p.r], linear[p.g], linear[p.b]); });
-  }
+/// Linear values of an 8-bit image.
+core::ImageRgb decoded(const core::ImageRgba8& encoded) {
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = core::decodeSrgb(static_cast<float>(i) / 255.0f);
+  core::ImageRgb out(encoded.width(), encoded.height());
+  std::transform(encoded.pixels().begin(), encoded.pixels().end(), out.pixels().begin(),
+                 [&](const core::Rgba8& p) { return core::Vec3(linear[p.r], linear[p.g], linear[p.b]); });
+  return out;
+}
+
+core::ImageRgb readLinear(const fs::path& file, core::LoadBudget& budget) {
+  if (lowerExtension(file) == ".exr") return core::readExr(file, budget);
+  const std::vector<std::uint8_t> bytes = core::readWholeFile(file, budget);
+  if (lowerExtension(file) == ".hdr") return core::decodeHdr(bytes, file.string(), budget);
+  const core::ImageRgba8 encoded = core::decodeImage(bytes, file.string(), budget);
+  budget.charge(encoded.pixels().size(), sizeof(core::Vec3), file.string());
+  return decoded(encoded);
+}
+
+core::ImageRgb readIrradiance(const fs::path& file, float scale, core::LoadBudget& budget) {
+  core::ImageRgb out = readLinear(file, budget);
   const float factor = std::numbers::pi_v<float> * scale;
   for (core::Vec3& pixel : out.pixels()) {
     for (int c = 0; c < 3; ++c) {
@@ -104,7 +115,8 @@ void reportBaked(const core::Scene& scene, const raytrace::ImportedLight& import
 }  // namespace
 
 raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene& scene, float scale,
-                                      LightmapReport& report) {
+                                      const core::LoadLimits& limits, LightmapReport& report) {
+  core::LoadBudget budget(limits, folder.string());
   if (!(scale > 0 && scale < core::kInfinity))
     throw core::UsageError("--import-scale must be a positive number");
   raytrace::ImportedLight out;
@@ -125,7 +137,7 @@ raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene&
       report.warnings.push_back("node '" + name + "' has parts without a second UV set; '" + shown +
                                 "' does not light them, they are baked");
     if (takers.able.empty()) continue;
-    out.images.push_back(readIrradiance(files[0], scale));
+    out.images.push_back(readIrradiance(files[0], scale, budget));
     for (const std::size_t o : takers.able) out.imageOfObject[o] = static_cast<int>(out.images.size()) - 1;
     report.taken.push_back(shown + " (" + std::to_string(out.images.back().width()) + "x" +
                            std::to_string(out.images.back().height()) + "): node '" + name + "', " +
@@ -137,7 +149,7 @@ raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene&
   if (out.images.empty())
     throw core::Error(
         folder.string() +
-        ": no image there fits a node of the scene; name them NODE.lightmap.png (or .jpg, .exr) "
+        ": no image there fits a node of the scene; name them NODE.lightmap.png (or .jpg, .hdr, .exr) "
         "after nodes whose meshes have a second UV set");
   reportBaked(scene, out, report);
   return out;

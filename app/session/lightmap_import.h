@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/load_budget.h"
 #include "core/scene/scene.h"
 #include "raytrace/bake/imported_light.h"
 
@@ -21,8 +22,9 @@ struct LightmapReport {
 /// node of that name. Irradiance = pi * value * scale: a value of 1 is what lights a white diffuse surface to
 /// radiance 1. 8-bit images hold sRGB-encoded values, .hdr and .exr linear ones; values that are negative or
 /// not finite count as 0. Throws core::Error when the folder cannot be read, an image is broken, a node has
-/// two images, or nothing matches; core::UsageError when `scale` is not a positive number.
+/// two images, nothing matches, or all images together cost more than `limits`; core::UsageError when `scale`
+/// is not a positive number.
 raytrace::ImportedLight readLightmaps(const std::filesystem::path& folder, const core::Scene& scene,
-                                      float scale, LightmapReport& report);
+                                      float scale, const core::LoadLimits& limits, LightmapReport& report);
 
 }  // namespace saccade::app

@@ -57,9 +57,11 @@ std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Scene& scene) {
+raytrace::ImportedLight importReported(const BakeRequest& bake, const core::LoadLimits& limits,
+                                       const core::Scene& scene) {
   LightmapReport report;
-  raytrace::ImportedLight imported = readLightmaps(bake.importFolder, scene, bake.importScale, report);
+  raytrace::ImportedLight imported =
+      readLightmaps(bake.importFolder, scene, bake.importScale, limits, report);
   for (const std::string& line : report.taken) spdlog::info("imported {}", line);
   printWarnings(report.warnings);
   if (!report.baked.empty()) spdlog::info("baked, for want of a lightmap: {}", joined(report.baked));
@@ -76,7 +78,7 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
   bakeOptions.threads = bake.threads;
   raytrace::ImportedLight imported;
   if (!bake.importFolder.empty()) {
-    imported = importReported(bake, w.scene);
+    imported = importReported(bake, options.load.limits, w.scene);
     bakeOptions.imported = &imported;
   }
   core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bakeOptions,

@@ -61,7 +61,7 @@ core::ImageRgba8 halves() {
 std::string errorOf(const fs::path& folder, const core::Scene& scene, float scale = 1) {
   app::LightmapReport report;
   try {
-    app::readLightmaps(folder, scene, scale, report);
+    app::readLightmaps(folder, scene, scale, {}, report);
   } catch (const std::exception& e) {
     return e.what();
   }
@@ -76,7 +76,7 @@ TEST(LightmapImport, FilesAreMatchedToNodesAndTheRestIsReported) {
   core::writePng(folder / "stranger.png", halves());
   core::writeExr(folder / "stranger.exr", core::ImageRgb(1, 1));  // two for no node: no error
   app::LightmapReport report;
-  const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 2, report);
+  const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 2, {}, report);
   ASSERT_EQ(light.images.size(), 1u);
   EXPECT_EQ(report.taken, std::vector<std::string>{"floor.lightmap.png (64x64): node 'floor', 1 objects"});
   EXPECT_EQ(report.baked, std::vector<std::string>{"shelf"});
@@ -96,9 +96,22 @@ TEST(LightmapImport, FloatImagesAreLinearAndBadValuesBecomeNone) {
   image.at(1, 0) = Vec3(-1, NAN, INFINITY);
   core::writeExr(folder / "floor.exr", image);
   app::LightmapReport report;
-  const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 1, report);
+  const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 1, {}, report);
   EXPECT_LT(glm::length(light.images[0].at(0, 0) - core::kPi * Vec3(0.25f, 3, 40)), 1e-4f);
   EXPECT_EQ(light.images[0].at(1, 0), Vec3(0));
+}
+
+TEST(LightmapImport, RadiancePicturesAreLinear) {
+  const fs::path folder = freshFolder("import-hdr");
+  const core::Scene scene = core::loadScene(twoSquares(folder), {});
+  std::ofstream(folder / "floor.lightmap.hdr", std::ios::binary)
+      << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x40\x20\x83";  // mantissa / 256 * 2^3
+  app::LightmapReport report;
+  const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 1, {}, report);
+  const Vec3 value = light.images.at(0).at(0, 0) / core::kPi;
+  EXPECT_NEAR(value.x, 4, 0.05f);
+  EXPECT_NEAR(value.y, 2, 0.05f);
+  EXPECT_NEAR(value.z, 1, 0.05f);
 }
 
 TEST(LightmapImport, ErrorsSayWhatToDo) {
@@ -111,6 +124,8 @@ TEST(LightmapImport, ErrorsSayWhatToDo) {
   core::writeExr(folder / "floor.exr", core::ImageRgb(1, 1));
   EXPECT_NE(errorOf(folder, scene).find("keep one of them"), std::string::npos);
   fs::remove(folder / "floor.exr");
+  app::LightmapReport report;
+  EXPECT_THROW(app::readLightmaps(folder, scene, 1, {.memoryBytes = 10000}, report), core::Error);
   std::ofstream(folder / "floor.png") << "no image";
   EXPECT_NE(errorOf(folder, scene), "");
 }
@@ -151,7 +166,7 @@ TEST(LightmapImport, BabylonsCornellBox) {
   SACCADE_SHARED_FILE(file, "scenes/lightmapped/cornellBox.glb");
   const core::Scene scene = core::loadScene(file, {});
   app::LightmapReport report;
-  const raytrace::ImportedLight light = app::readLightmaps(file.parent_path(), scene, 1, report);
+  const raytrace::ImportedLight light = app::readLightmaps(file.parent_path(), scene, 1, {}, report);
   EXPECT_EQ(light.images.size(), 2u);
   EXPECT_TRUE(report.warnings.empty());
   EXPECT_EQ(report.baked, (std::vector<std::string>{"lamp.000", "suzanne.000"}));
