@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "core/scene/texture_transform.h"
+#include "core/scene/tangents.h"
 
 namespace saccade::core {
 namespace {
@@ -105,50 +105,6 @@ void repairNormals(Mesh& m, RepairCounts& counts) {
   }
 }
 
-Vec3 anyPerpendicular(const Vec3& n) {
-  return glm::normalize(glm::cross(n, std::abs(n.x) < 0.9f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-}
-
-void makeTangents(Mesh& m, const std::vector<Vec2>& uv) {
-  std::vector<Vec3> along(m.positions.size(), Vec3(0)), across(m.positions.size(), Vec3(0));
-  for (std::size_t first = 0; first + 2 < m.indices.size() && !uv.empty(); first += 3) {
-    const std::uint32_t a = m.indices[first], b = m.indices[first + 1], c = m.indices[first + 2];
-    const Vec3 e1 = m.positions[b] - m.positions[a], e2 = m.positions[c] - m.positions[a];
-    const Vec2 d1 = uv[b] - uv[a], d2 = uv[c] - uv[a];
-    const float determinant = d1.x * d2.y - d2.x * d1.y;
-    if (determinant == 0 || !std::isfinite(determinant)) continue;
-    // v runs down the image and a normal map's green points up it: the bitangent is -dP/dv.
-    const float side = determinant > 0 ? 1.0f : -1.0f;
-    const Vec3 tangent = side * (e1 * d2.y - e2 * d1.y), bitangent = side * (e1 * d2.x - e2 * d1.x);
-    for (const std::uint32_t v : {a, b, c}) {
-      along[v] += tangent;
-      across[v] += bitangent;
-    }
-  }
-  m.tangents.resize(m.positions.size());
-  for (std::size_t i = 0; i < m.positions.size(); ++i) {
-    const Vec3& n = m.normals[i];
-    Vec3 t = along[i] - n * glm::dot(n, along[i]);
-    const float length = glm::length(t);
-    t = length > 0 && std::isfinite(length) ? t / length : anyPerpendicular(n);
-    m.tangents[i] = Vec4(t, glm::dot(glm::cross(n, t), across[i]) < 0 ? -1.0f : 1.0f);
-  }
-}
-
-const TextureSlot& tangentSlot(const Material& m) {
-  for (const TextureSlot* slot : {&m.normalTexture, &m.clearcoatNormalTexture})
-    if (*slot) return *slot;
-  return m.anisotropyTexture;
-}
-
-std::vector<Vec2> tangentUv(const Mesh& mesh, const TextureSlot& slot) {
-  std::vector<Vec2> uv = slot.uvSet == 1 && !mesh.uv1.empty() ? mesh.uv1 : mesh.uv0;
-  if (!slot.transformed()) return uv;
-  const glm::mat3x2 matrix = uvMatrix(slot);
-  for (Vec2& at : uv) at = matrix * Vec3(at, 1);
-  return uv;
-}
-
 void repairTangents(Mesh& m) {
   for (std::size_t i = 0; i < m.tangents.size(); ++i) {
     Vec3 t(m.tangents[i]);
@@ -186,7 +142,7 @@ void repairMesh(Mesh& mesh, const Material& material, RepairCounts& counts) {
   if (!material.needsTangents()) {
     mesh.tangents.clear();
   } else if (mesh.tangents.empty()) {
-    makeTangents(mesh, tangentUv(mesh, tangentSlot(material)));
+    makeTangents(mesh, material);
   } else {
     repairTangents(mesh);
   }
@@ -214,6 +170,7 @@ std::vector<std::uint32_t> weldedVertices(const std::vector<Vec3>& positions) {
 
 Mesh gatherVertices(const Mesh& m, const std::vector<std::uint32_t>& sources) {
   Mesh out;
+  out.instanced = m.instanced;
   out.positions = gather(m.positions, sources);
   out.normals = gather(m.normals, sources);
   out.tangents = gather(m.tangents, sources);

@@ -14,9 +14,8 @@ struct RepairCounts {
 };
 
 /// Drops what is unusable, fills normals (flat ones where there are none, which splits vertices) and, for a
-/// material that needs them, tangents: the file's own, or those of the texture coordinates of the first of
-/// its normal map, clear coat's normal map and anisotropy map, transformed as that texture is (else of the
-/// first UV set). Leaves the mesh within the contract of core::Mesh.
+/// material that needs them, tangents: the file's own or makeTangents'. Leaves the mesh within the contract
+/// of core::Mesh.
 void repairMesh(Mesh& mesh, const Material& material, RepairCounts& counts);
 
 /// For every position the smallest index of a vertex with the same position (bit for bit, -0 = 0).

@@ -51,10 +51,14 @@ std::string header(Features features) {
   if (attributes & (1u << kUv1)) text += "#define UV1\n";
   for (const TextureUse& use : kTextureUses) {
     if (!(features & use.texture)) continue;
-    const std::string macro = use.macro, uv = features & use.secondUv ? "uv1" : "uv0";
-    text += "#define " + macro + "_TEXTURE\n#define " + macro + "_UV ";
-    text += features & use.transform ? "(" + std::string(use.uvMatrix) + " * vec3(" + uv + ", 1.0))\n"
-                                     : uv + "\n";
+    const char* uv = features & use.secondUv ? "uv1" : "uv0";
+    const auto append = [&](auto... parts) { (text.append(parts), ...); };
+    append("#define ", use.macro, "_TEXTURE\n#define ", use.macro, "_UV ");
+    if (features & use.transform) {
+      append("(", use.uvMatrix, " * vec3(", uv, ", 1.0))\n");
+    } else {
+      append(uv, "\n");
+    }
   }
   return text;
 }

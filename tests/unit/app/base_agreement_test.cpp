@@ -38,7 +38,8 @@ core::Texture patches(std::uint8_t seed, bool srgb) {
 struct Case {
   core::AlphaMode alphaMode = core::AlphaMode::opaque;
   int uvSet = 0;
-  bool transformed = false, colored = false, unlit = false, doubleSided = false, behind = false, ward = false;
+  bool transformed = false, colored = false, unlit = false, doubleSided = false, behind = false, ward = false,
+       layered = false;
 };
 
 core::TextureSlot slotOf(const Case& c, int texture) {
@@ -67,6 +68,12 @@ core::Material materialOf(const Case& c) {
     m.specular = 0;
     m.ward = core::WardLobe{m.baseColor, Vec3(0.1f), 0.1f, 0.2f};
     return m;
+  }
+  if (c.layered) {
+    m.sheenColor = {0.2f, 0.6f, 0.4f};
+    m.sheenRoughness = 0.4f;
+    m.clearcoat = 0.7f;
+    m.clearcoatRoughness = 0.2f;
   }
   m.metallic = 0.5f;
   m.metallicRoughnessTexture = slotOf(c, 2);
@@ -125,7 +132,7 @@ std::string describe(const Case& c) {
   return "alpha mode " + std::to_string(static_cast<int>(c.alphaMode)) + ", uv set " +
          std::to_string(c.uvSet) + (c.transformed ? ", transformed" : "") + (c.colored ? ", colours" : "") +
          (c.unlit ? ", unlit" : "") + (c.doubleSided ? ", double-sided" : "") +
-         (c.behind ? ", from behind" : "") + (c.ward ? ", Ward" : "");
+         (c.behind ? ", from behind" : "") + (c.ward ? ", Ward" : "") + (c.layered ? ", coat and sheen" : "");
 }
 
 TEST(BaseAgreement, EveryAlphaModeUvSetTransformAndColour) {
@@ -145,13 +152,14 @@ TEST(BaseAgreement, EveryAlphaModeUvSetTransformAndColour) {
   }
 }
 
-TEST(BaseAgreement, BothSides) {
+TEST(BaseAgreement, BothSidesUnderEveryLayer) {
   for (const bool behind : {false, true}) {
     for (const bool ward : {false, true}) {
       Case c;
       c.transformed = c.doubleSided = true;
       c.behind = behind;
       c.ward = ward;
+      c.layered = !ward;
       SCOPED_TRACE(describe(c));
       EXPECT_GT(expectAgreement(c), kSide * kSide / 8);
     }

@@ -199,6 +199,43 @@ TEST(MeshRepair, TangentsFollowTheTexture) {
   }
 }
 
+TEST(MeshRepair, MirroredPicturesShareNoTangents) {
+  // Two quads side by side in the x-y plane; the right one shows the left one's picture mirrored, and the
+  // vertices between them are shared.
+  Mesh m;
+  m.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0), Vec3(2, 1, 0)};
+  m.uv0 = {{0, 1}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {0, 0}};
+  m.normals.assign(6, Vec3(0, 0, 1));
+  m.indices = {0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4};
+  Material bumpy;
+  bumpy.normalTexture.texture = 0;
+  RepairCounts counts;
+  repairMesh(m, bumpy, counts);
+  EXPECT_EQ(m.positions.size(), 8u);
+  ASSERT_EQ(m.tangents.size(), 8u);
+  for (std::size_t k = 0; k < m.indices.size(); ++k) {
+    const bool left = k < 6;
+    const Vec4 expected(left ? 1 : -1, 0, 0, left ? 1 : -1);
+    EXPECT_LT(glm::length(m.tangents[m.indices[k]] - expected), 1e-6f) << "corner " << k;
+  }
+}
+
+TEST(MeshRepair, TangentsWeighTrianglesByTheirAngleNotTheirSize) {
+  // At the origin meet a small triangle over 90 degrees, whose picture's u runs along +x, and one of 2,500
+  // times the area over 45 degrees, whose picture is turned: u along +y.
+  Mesh m;
+  m.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(-50, 0, 0), Vec3(-50, -50, 0)};
+  m.uv0 = {{0, 0}, {1, 0}, {0, -1}, {0, -50}, {-50, -50}};
+  m.normals.assign(5, Vec3(0, 0, 1));
+  m.indices = {0, 1, 2, 0, 3, 4};
+  Material bumpy;
+  bumpy.normalTexture.texture = 0;
+  RepairCounts counts;
+  repairMesh(m, bumpy, counts);
+  const Vec3 expected = glm::normalize(2.0f * Vec3(1, 0, 0) + Vec3(0, 1, 0));
+  EXPECT_LT(glm::length(Vec3(m.tangents[0]) - expected), 1e-5f);
+}
+
 TEST(MeshRepair, UnusableNormalsAreRebuilt) {
   Mesh m = boxMesh(Vec3(-1), Vec3(1));
   m.normals.assign(8, Vec3(0));
