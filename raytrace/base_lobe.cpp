@@ -50,7 +50,20 @@ BaseLobe::BaseLobe(const Surface& surface, const Vec3& v) : v_(v) {
     f0_ = (m.baseColor * m.metallic + m.dielectricF0 * lambert_) / mirror_;
     f90_ = (m.metallic + m.dielectricF90 * lambert_) / mirror_;
   }
+  f0Estimate_ = f0_;
+  if (m.extension && m.extension->film) addFilm(m.extension->film);
   lambdaV_ = delta_ ? 0 : ggx_.lambda(v_);
+}
+
+void BaseLobe::addFilm(const core::ThinFilm& film) {
+  film_ = film;
+  underFilm_ = f0Dielectric_;
+  if (lambert_ > 0) f0Dielectric_ = core::filmedF0(film_, underFilm_, f90Dielectric_);
+  if (mirror_ > 0) {
+    const float metallic = mirror_ - lambert_;
+    const Vec3 metal = metallic > 0 ? core::filmedF0(film_, baseColor_, 1) : Vec3(0);
+    f0Estimate_ = (metal * metallic + f0Dielectric_ * lambert_) / mirror_;
+  }
 }
 
 void BaseLobe::setIor(float ior) {
@@ -60,7 +73,7 @@ void BaseLobe::setIor(float ior) {
 
 float BaseLobe::estimate(const core::AlbedoPair& pair) const {
   if (ward_) return core::luminance(ward_->specular);
-  return core::luminance(core::lobeAlbedo(pair, f0_, f90_)) * mirror_ + glass_;
+  return core::luminance(core::lobeAlbedo(pair, f0Estimate_, f90_)) * mirror_ + glass_;
 }
 
 BaseLobe::Interface BaseLobe::facet(float cosVH) const {
@@ -69,14 +82,42 @@ BaseLobe::Interface BaseLobe::facet(float cosVH) const {
     f.reflect = ward_->specular;
     return f;
   }
-  if (mirror_ > 0) f.reflect = schlick(f0_, f90_, cosVH) * mirror_;
+  if (mirror_ > 0) f.reflect = film_ ? filmedMirror(cosVH) : schlick(f0_, f90_, cosVH) * mirror_;
   if (glass_ > 0) {
     float r = fresnelDielectric(cosVH, eta_);
+    if (film_) {
+      const Vec3 filmed = filmedGlass(cosVH, r);
+      f.reflect += glass_ * filmed;
+      f.transmit = baseColor_ * glass_ * (Vec3(1) - filmed);
+      return f;
+    }
     if (thin_) r = 2 * r / (1 + r);
     f.reflect += Vec3(glass_ * r);
     f.transmit = baseColor_ * (glass_ * (1 - r));
   }
   return f;
+}
+
+/// S under a film: metal and dielectric apart, for the film is not linear in what lies below.
+Vec3 BaseLobe::filmedMirror(float cosVH) const {
+  const auto part = [&](float weight, const Vec3& f0, float f90) {
+    if (!(weight > 0)) return Vec3(0);
+    const Vec3 filmed = core::filmReflectance(film_, f0, cosVH) * f90;
+    return weight * glm::mix(schlick(f0, f90, cosVH), filmed, film_.weight);
+  };
+  return part(mirror_ - lambert_, baseColor_, 1) + part(lambert_, underFilm_, f90Dielectric_);
+}
+
+/// The interface under a film on its outside, met from either side: the same along one path.
+Vec3 BaseLobe::filmedGlass(float cosVH, float plain) const {
+  Vec3 r(plain);
+  float outside = cosVH;
+  if (!entering_) outside = std::sqrt(std::max(0.0f, 1 - (1 - cosVH * cosVH) / (eta_ * eta_)));
+  if (plain < 1) {  // not totally reflected
+    const float root = (eta_ - 1) / (eta_ + 1);
+    r = glm::mix(r, core::filmReflectance(film_, Vec3(root * root), outside), film_.weight);
+  }
+  return thin_ ? 2.0f * r / (Vec3(1) + r) : r;
 }
 
 float BaseLobe::reflectProbability(const Interface& f) const {

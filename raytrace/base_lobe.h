@@ -59,7 +59,10 @@ class BaseLobe {
     Vec3 h{0};
     float vh = 0, jacobian = 0;
   };
+  void addFilm(const core::ThinFilm& film);
   Interface facet(float cosVH) const;
+  Vec3 filmedMirror(float cosVH) const;
+  Vec3 filmedGlass(float cosVH, float plain) const;
   float reflectProbability(const Interface& f) const;
   bool crossing(const Vec3& l, Crossing& c) const;
   Vec3 refract(const Vec3& h, float cosVH) const;
@@ -68,14 +71,17 @@ class BaseLobe {
   Vec3 v_{0, 0, 1};
   Ggx ggx_;
   float lambdaV_ = 0;
-  float eta_ = 1;      ///< n_t / n_i for light going the way of -v
-  float mirror_ = 0;   ///< weight of S
-  float glass_ = 0;    ///< weight of G
-  float lambert_ = 0;  ///< weight of D
-  Vec3 f0_{0};         ///< of S, metal and dielectric mixed
-  Vec3 f0Dielectric_{0};
+  float eta_ = 1;         ///< n_t / n_i for light going the way of -v
+  float mirror_ = 0;      ///< weight of S
+  float glass_ = 0;       ///< weight of G
+  float lambert_ = 0;     ///< weight of D
+  Vec3 f0_{0};            ///< of S, metal and dielectric mixed
+  Vec3 f0Dielectric_{0};  ///< of the lobe over Lambert; with a film, its bound (core::filmedF0)
+  Vec3 f0Estimate_{0};    ///< the same of f0_
   float f90_ = 1, f90Dielectric_ = 1;
   Vec3 baseColor_{0};
+  core::ThinFilm film_;
+  Vec3 underFilm_{0};  ///< the dielectric's F0
   std::optional<Ward> ward_;
   bool entering_ = true, thin_ = false, straight_ = false, delta_ = false, any_ = false;
 };

@@ -67,6 +67,9 @@ class Bsdf {
   /// About what the lobes reflect and transmit of light towards the eye, luminance; deltas counted.
   float estimate(unsigned lobes) const;
 
+  /// From now on the index that one channel of light sees: Surface::iorOf.
+  void setIor(float ior) { base_.setIor(ior); }
+
   /// f(toEye, wi) |cos wi| without deltas; wi unit. 0 across the surface where nothing transmits.
   Vec3 eval(const Vec3& wi, unsigned lobes) const;
   /// Density of sample() per solid angle, deltas left out.

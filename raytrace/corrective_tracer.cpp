@@ -95,6 +95,8 @@ class Walk {
   Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
   Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
   Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 branches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 dispersed(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 layeredBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 branch(const Surface& surface, const BsdfSample& sample, float chance, int depth, float weight);
   Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight);
@@ -108,6 +110,7 @@ class Walk {
   core::PixelSampler sampler_;
   RayCounters& counters_;
   Inside inside_;
+  int channel_ = -1;  ///< the only one followed; -1: all
 };
 
 float Walk::emissionWeight(const Hit& hit, const Vec3& direction, float distance,
@@ -184,15 +187,39 @@ Vec3 Walk::specular(const Surface& surface, const Bsdf& bsdf, int depth, float w
     compensation = 1 / survival;
     weight = kRouletteWeight;
   }
-  Vec3 radiance(0);
-  if (bsdf.layered()) {
-    radiance = layeredBranches(surface, bsdf, depth, weight);
-  } else if (bsdf.delta()) {
-    radiance = deltaBranches(surface, bsdf, depth, weight);
+  const bool splits = world_.disperses() && surface.disperses();
+  return (splits ? dispersed(surface, bsdf, depth, weight) : branches(surface, bsdf, depth, weight)) *
+         compensation;
+}
+
+Vec3 Walk::branches(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  if (bsdf.layered()) return layeredBranches(surface, bsdf, depth, weight);
+  if (bsdf.delta()) return deltaBranches(surface, bsdf, depth, weight);
+  return roughRays(surface, bsdf, kLobeSpecular, depth, weight);
+}
+
+/// The first solid that splits light is followed for each channel, with the same random numbers; deeper ones,
+/// met first after kSplitDepth, for one drawn channel. From there on all solids have that channel's index.
+Vec3 Walk::dispersed(const Surface& surface, const Bsdf& bsdf, int depth, float weight) {
+  const auto follow = [&](int channel) {
+    Bsdf one = bsdf;
+    one.setIor(surface.iorOf(channel));
+    return branches(surface, one, depth, weight);
+  };
+  if (channel_ >= 0) return follow(channel_);
+  Vec3 sum(0);
+  if (depth < kSplitDepth) {
+    const core::PixelSampler before = sampler_;
+    for (channel_ = 0; channel_ < 3; ++channel_) {
+      sampler_ = before;
+      sum[channel_] = follow(channel_)[channel_];
+    }
   } else {
-    radiance = roughRays(surface, bsdf, kLobeSpecular, depth, weight);
+    channel_ = std::min(2, static_cast<int>(3 * sampler_.next1D()));
+    sum = heroOf(follow(channel_), channel_);
   }
-  return radiance * compensation;
+  channel_ = -1;
+  return sum;
 }
 
 Vec3 Walk::branch(const Surface& surface, const BsdfSample& s, float chance, int depth, float weight) {

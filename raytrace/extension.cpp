@@ -9,7 +9,7 @@ std::shared_ptr<const CompiledExtension> compileExtension(const core::Material& 
     c.ward = Ward{m.ward->specular, m.ward->alphaX, m.ward->alphaY};
     return std::make_shared<const CompiledExtension>(c);
   }
-  if (!(m.clearcoat > 0 || m.anisotropy > 0 || m.sheenColor != Vec3(0))) return nullptr;
+  if (!(m.clearcoat > 0 || m.anisotropy > 0 || m.sheenColor != Vec3(0) || m.iridescence > 0)) return nullptr;
   CompiledExtension c;
   c.clearcoat = m.clearcoat;
   c.clearcoatRoughness = m.clearcoatRoughness;
@@ -18,6 +18,12 @@ std::shared_ptr<const CompiledExtension> compileExtension(const core::Material& 
   c.anisotropyDirection = {std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation)};
   c.sheenColor = m.sheenColor;
   c.sheenRoughness = m.sheenRoughness;
+  c.iridescence = m.iridescence;
+  c.iridescenceIor = m.iridescenceIor;
+  c.thicknessMin = m.iridescenceThicknessMin;
+  c.thicknessMax = m.iridescenceThicknessMax;
+  c.iridescenceTexture = textures.view(m.iridescenceTexture);
+  c.iridescenceThicknessTexture = textures.view(m.iridescenceThicknessTexture);
   c.clearcoatTexture = textures.view(m.clearcoatTexture);
   c.clearcoatRoughnessTexture = textures.view(m.clearcoatRoughnessTexture);
   c.clearcoatNormalTexture = textures.view(m.clearcoatNormalTexture);

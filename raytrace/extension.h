@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/scene/scene.h"
+#include "core/scene/thin_film.h"
 #include "raytrace/ray.h"
 #include "raytrace/texture_store.h"
 #include "raytrace/ward.h"
@@ -19,9 +20,10 @@ struct CompiledExtension {
   Vec2 anisotropyDirection{1, 0};  ///< in (tangent, bitangent)
   Vec3 sheenColor{0};
   float sheenRoughness = 0;
+  float iridescence = 0, iridescenceIor = 1.3f, thicknessMin = 0, thicknessMax = 0;  ///< nm
   std::optional<Ward> ward;
   TextureView clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture, anisotropyTexture,
-      sheenColorTexture, sheenRoughnessTexture;
+      sheenColorTexture, sheenRoughnessTexture, iridescenceTexture, iridescenceThicknessTexture;
 };
 
 /// Null for a material with none of it.
@@ -38,6 +40,7 @@ struct ExtensionPoint {
   Vec3 tangent{0};               ///< the same in the world; 0 where the mesh has no tangents
   Vec3 sheenColor{0};
   float sheenRoughness = 0;  ///< perceptual
+  core::ThinFilm film;
   std::optional<Ward> ward;
 };
 
@@ -52,6 +55,12 @@ ExtensionPoint evaluateExtension(const CompiledExtension& e, const Texel& texel)
   p.sheenColor = e.sheenColor;
   p.sheenRoughness = e.sheenRoughness;
   p.ward = e.ward;
+  p.film = {e.iridescence, e.iridescenceIor, e.thicknessMax};
+  if (e.iridescenceTexture) p.film.weight *= texel(e.iridescenceTexture).x;
+  if (e.iridescenceThicknessTexture) {
+    p.film.thickness =
+        e.thicknessMin + (e.thicknessMax - e.thicknessMin) * texel(e.iridescenceThicknessTexture).y;
+  }
   if (e.clearcoatTexture) p.clearcoat *= texel(e.clearcoatTexture).x;
   if (e.clearcoatRoughnessTexture) p.clearcoatRoughness *= texel(e.clearcoatRoughnessTexture).y;
   if (e.anisotropyTexture) {

@@ -53,6 +53,7 @@ CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material&
   c.transmissionTexture = textures.view(m.transmissionTexture);
   c.extension = compileExtension(m, textures);
   c.absorption = absorption(m);
+  c.dispersion = m.disperses() ? m.dispersion : 0;
   c.textured = c.baseColorTexture || c.metallicRoughnessTexture || c.emissionTexture || c.specularTexture ||
                c.specularColorTexture || c.transmissionTexture;
   return c;

@@ -1,6 +1,7 @@
 // Materials as the tracer wants them: factors and resolved textures, packed once per scene.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -36,6 +37,7 @@ struct CompiledMaterial {
   std::shared_ptr<const CompiledExtension> extension;  ///< null: none
   /// KHR_materials_volume: extinction inside a solid, per metre; see absorption().
   Vec3 absorption{0};
+  float dispersion = 0;  ///< KHR_materials_dispersion; 0 where nothing is split
 
   /// Seen from behind: a closed or thin transmitter and double-sided surfaces scatter, others are black.
   bool scattersBehind() const { return doubleSided || transmission > 0; }
@@ -48,6 +50,17 @@ Vec3 absorption(const core::Material& material);
 /// exp(-absorption * distance) by channel; 1 where either is 0, whatever the other. distance >= 0 or
 /// infinite.
 Vec3 beerLambert(const Vec3& absorption, float distance);
+
+/// KHR_materials_dispersion: the index that channel 0, 1 or 2 sees, >= 1.
+inline float dispersedIor(float ior, float dispersion, int channel) {
+  return std::max(1.0f, ior + static_cast<float>(channel - 1) * (ior - 1) * 0.025f * dispersion);
+}
+/// What stands for all channels where one in three is followed.
+inline Vec3 heroOf(const Vec3& color, int channel) {
+  Vec3 hero(0);
+  hero[channel] = 3 * color[channel];
+  return hero;
+}
 
 CompiledMaterial compileMaterial(const core::Scene& scene, const core::Material& material,
                                  const TextureStore& textures);

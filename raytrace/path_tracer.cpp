@@ -26,11 +26,12 @@ float powerHeuristic(float a, float b) {
 /// The material as the transport sees it: with Transport::diffuse only the base layer's Lambert lobe.
 class Scatterer {
  public:
-  Scatterer(const Surface& surface, const Vec3& toEye, const PathOptions& options)
+  Scatterer(const Surface& surface, const Vec3& toEye, const PathOptions& options, int channel)
       : full_(surface, toEye, options.diffuse),
         frame_(surface.ns),
         ng_(surface.ng),
         diffuseOnly_(options.transport == Transport::diffuse) {
+    if (channel >= 0 && surface.disperses()) full_.setIor(surface.iorOf(channel));
     albedo_ = diffuseOnly_ && surface.scatters() ? baseAlbedo(surface.point) : Vec3(0);
   }
   /// Light sampling can contribute.
@@ -118,7 +119,8 @@ class Path {
 
   /// Direct light by light sampling, then the next ray. False when the path ends.
   bool scatter(const Surface& surface, Ray& ray) {
-    const Scatterer material(surface, -ray.direction, options_);
+    if (world_.disperses() && surface.disperses()) followOneChannel();
+    const Scatterer material(surface, -ray.direction, options_, channel_);
     const bool lights = !world_.lights().empty() && material.takesLight();
     if (lights) {
       choice_ = world_.lights().choose(surface.position);
@@ -155,6 +157,13 @@ class Path {
     return inside.transmittance(world_, light.distance);
   }
 
+  /// The first solid that splits light leaves the path one channel, drawn once.
+  void followOneChannel() {
+    if (channel_ >= 0) return;
+    channel_ = std::min(2, static_cast<int>(3 * sampler_.next1D()));
+    throughput_ = heroOf(throughput_, channel_);
+  }
+
   bool survives() {
     const float survival = std::min(kLargestSurvival, largest(throughput_));
     if (!(sampler_.next1D() < survival)) return false;
@@ -168,6 +177,7 @@ class Path {
   RayCounters& counters_;
   Vec3 sum_{0};
   Vec3 throughput_{1};
+  int channel_ = -1;     ///< the only one followed; -1: all
   Inside inside_;        ///< kept only where a solid attenuates
   LightChoice choice_;   ///< at the last rough scattering
   float density_ = 0;    ///< of the present ray, 0 = the lights were not sampled where it began

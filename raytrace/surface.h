@@ -26,6 +26,10 @@ struct Surface {
   }
   /// The side seen scatters light (a single-sided opaque surface is black from behind).
   bool scatters() const { return front || material->scattersBehind(); }
+  /// A solid that splits light into colours.
+  bool disperses() const { return closed && material->dispersion > 0; }
+  /// The index that one channel of light sees (KHR_materials_dispersion).
+  float iorOf(int channel) const { return dispersedIor(point.ior, material->dispersion, channel); }
   /// The side seen emits.
   Vec3 emitted() const { return front || material->doubleSided ? point.emission : Vec3(0); }
 };

@@ -201,6 +201,7 @@ World::World(const core::Scene& scene, const core::Plan& plan)
     : scene_(scene),
       recursionDepth_(plan.recursionDepth),
       attenuates_(plan.attenuation),
+      disperses_(plan.dispersion),
       textures_(scene),
       embree_(std::make_unique<Embree>()) {
   materials_.reserve(scene.materials.size());

@@ -106,6 +106,8 @@ class World {
   bool solid(std::uint32_t object) const { return closed(object) && materialOf(object).transmission > 0; }
   /// Some solid tints light (core::Plan): paths keep track of the solids they are in.
   bool attenuates() const { return attenuates_; }
+  /// Some solid splits light into colours.
+  bool disperses() const { return disperses_; }
   bool hasColors(std::uint32_t object) const { return flags_[object] & kColors; }
   /// ID mask value (1..idCount) to object index; throws core::Error for an unknown id.
   std::uint32_t objectOfId(std::uint32_t id) const;
@@ -122,7 +124,7 @@ class World {
 
   const core::Scene& scene_;
   int recursionDepth_ = 0;
-  bool attenuates_ = false;
+  bool attenuates_ = false, disperses_ = false;
   TextureStore textures_;
   std::vector<CompiledMaterial> materials_;
   std::vector<std::uint32_t> materialOf_;  ///< by object

@@ -44,7 +44,8 @@ double areaOf(const Mesh& mesh) {
 /// What the objects of a scene amount to.
 struct Census {
   std::size_t nonDiffuse = 0, rough = 0, transmitting = 0, alpha = 0, normalMapped = 0, doubleSided = 0,
-              emitting = 0, attenuating = 0, coated = 0, anisotropic = 0, sheen = 0, ward = 0;
+              emitting = 0, attenuating = 0, coated = 0, anisotropic = 0, sheen = 0, ward = 0, iridescent = 0,
+              dispersing = 0;
   double area = 0, leftOut = 0, diffuseArea = 0;
 };
 
@@ -53,6 +54,7 @@ void countLayers(const Material& m, Census& c) {
   c.ward += m.ward.has_value();
   if (m.ward) return;
   c.coated += m.clearcoat > 0;
+  c.iridescent += m.iridescence > 0;
   c.anisotropic += m.anisotropy > 0;
   c.sheen += m.sheenColor != Vec3(0);
 }
@@ -70,6 +72,7 @@ Census count(const Scene& scene) {
     c.emitting += m.emits();
     c.normalMapped += static_cast<bool>(m.normalTexture);
     c.attenuating += o.closed && m.attenuates();
+    c.dispersing += o.closed && m.disperses();
     countLayers(m, c);
     c.doubleSided += m.doubleSided && !m.unlit && mean.metallic < 1 && mean.transmission < 1;
     if (o.id == 0) {
@@ -115,6 +118,10 @@ void describe(const Scene& scene, const Census& c, Plan& plan) {
        "nothing transmits light");
   line("attenuation", plan.attenuation, counted(c.attenuating, "solid") + " tint the light that crosses",
        "no solid tints light");
+  line("dispersion", plan.dispersion, counted(c.dispersing, "solid") + " split light into colours",
+       "no solid splits light into colours");
+  line("iridescence", c.iridescent > 0, counted(c.iridescent, "object") + " under a thin film",
+       "no material has a thin film");
   line("clearcoat", c.coated > 0, counted(c.coated, "object") + " under a coat", "no material has a coat");
   line("anisotropy", c.anisotropic > 0, counted(c.anisotropic, "object") + " with brushed highlights",
        "no anisotropic material");
@@ -197,6 +204,7 @@ Plan makePlan(const Scene& scene) {
   plan.glossy = c.rough > 0;
   plan.refraction = c.transmitting > 0;
   plan.attenuation = c.attenuating > 0;
+  plan.dispersion = c.dispersing > 0;
   plan.alphaTest = c.alpha > 0;
   plan.normalMaps = c.normalMapped > 0;
   plan.doubleSided = c.doubleSided > 0;

@@ -19,6 +19,7 @@ struct Plan {
   bool glossy = false;       ///< a rough specular lobe occurs: distributed reflection, light sampling
   bool refraction = false;   ///< some object transmits
   bool attenuation = false;  ///< some solid tints the light that crosses it
+  bool dispersion = false;   ///< some solid splits light into colours
   bool alphaTest = false;    ///< mask or blend occurs
   bool normalMaps = false;
   bool doubleSided = false;  ///< maps need a back layer

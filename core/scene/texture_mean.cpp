@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/image_io.h"
+#include "core/scene/thin_film.h"
 
 namespace saccade::core {
 namespace {
@@ -26,6 +27,14 @@ const std::array<float, 256>& decodeTable(bool srgb) {
 
 Vec4 slotMean(const Scene& scene, const TextureSlot& slot) {
   return slot ? textureMean(scene.textures[static_cast<std::size_t>(slot.texture)]) : Vec4(1);
+}
+
+ThinFilm meanFilm(const Scene& scene, const Material& m) {
+  if (!(m.iridescence > 0)) return {};
+  ThinFilm film{m.iridescence * slotMean(scene, m.iridescenceTexture).x, m.iridescenceIor, 0};
+  const float mix = slotMean(scene, m.iridescenceThicknessTexture).y;
+  film.thickness = m.iridescenceThicknessMin + (m.iridescenceThicknessMax - m.iridescenceThicknessMin) * mix;
+  return film;
 }
 
 }  // namespace
@@ -63,13 +72,16 @@ MaterialMeans materialMeans(const Scene& scene, const Material& material) {
   const float specularWeight = slotMean(scene, material.specularTexture).w;
   const Vec3 specularTint(slotMean(scene, material.specularColorTexture));
   const Vec3 f0 = dielectricF0(material) * specularTint * specularWeight;
+  const float f90 = dielectricF90(f0, material.specular * specularWeight);
+  const ThinFilm film = meanFilm(scene, material);
+  const Vec3 dielectric = filmedF0(film, f0, f90), metallic = filmedF0(film, m.baseColor, 1);
   const AlbedoPair mean = meanAlbedo(m.roughness);
-  m.dielectricAlbedo = f0 * mean.scale + dielectricF90(f0, material.specular * specularWeight) * mean.bias;
-  m.metallicAlbedo = m.baseColor * mean.scale + mean.bias;
+  m.dielectricAlbedo = dielectric * mean.scale + f90 * mean.bias;
+  m.metallicAlbedo = metallic * mean.scale + mean.bias;
 
   m.sheenColor = material.sheenColor * Vec3(slotMean(scene, material.sheenColorTexture));
-  m.over.f0 = f0;
-  m.over.f90 = dielectricF90(f0, material.specular * specularWeight);
+  m.over.f0 = dielectric;
+  m.over.f90 = f90;
   const float anisotropy = material.anisotropy * slotMean(scene, material.anisotropyTexture).z;
   m.over.roughness = roughnessOverLambert(m.roughness, anisotropy);
   m.over.sheen = std::max({m.sheenColor.x, m.sheenColor.y, m.sheenColor.z});

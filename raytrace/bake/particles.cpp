@@ -37,6 +37,7 @@ class Tracer {
     Ray ray{offsetOrigin(start.origin, start.normal, start.direction, start.offset), start.direction, 0,
             core::kInfinity};
     Inside inside;
+    int channel = -1;    // the only one followed, from the first solid that splits light
     bool direct = true;  // has met nothing but see-through surfaces: what shadow rays account for
     for (int event = 0; event < kMaxEvents && core::luminance(weight) > 0; ++event) {
       Hit hit;
@@ -50,7 +51,7 @@ class Tracer {
         continue;
       }
       direct = false;
-      if (!surface.scatters() || !scatter(surface, random, ray, weight)) return;
+      if (!surface.scatters() || !scatter(surface, random, ray, weight, channel)) return;
       if (world_.attenuates()) inside.leave(surface, ray.direction);
     }
   }
@@ -80,8 +81,16 @@ class Tracer {
   }
 
   /// The next ray; false when the particle is absorbed.
-  static bool scatter(const Surface& surface, core::PixelSampler& random, Ray& ray, Vec3& weight) {
-    const Bsdf bsdf(surface, -ray.direction);
+  static bool scatter(const Surface& surface, core::PixelSampler& random, Ray& ray, Vec3& weight,
+                      int& channel) {
+    Bsdf bsdf(surface, -ray.direction);
+    if (surface.disperses()) {
+      if (channel < 0) {
+        channel = std::min(2, static_cast<int>(3 * random.next1D()));
+        weight = heroOf(weight, channel);
+      }
+      bsdf.setIor(surface.iorOf(channel));
+    }
     const float uLobe = random.next1D();
     const std::optional<BsdfSample> sample = bsdf.sample(uLobe, random.next2D(), kLobeAll);
     const float uSurvive = random.next1D();

@@ -112,12 +112,37 @@ TEST(CorrectiveTracer, BasePlusCorrectionIsTheTracedImageWhereTheMapsAreExact) {
   core::Material mixed = plastic;
   mixed.metallic = 0.4f;
   mixed.transmission = 0.5f;
-  for (const core::Material& material : {plastic, mixed, tests::metalMaterial(Vec3(0.7f), 0.6f),
-                                         tests::glassMaterial(1.5f, 0), tests::glassMaterial(1.5f, 0.4f)}) {
+  core::Material lacquered = plastic;  // a smooth coat over a rough base
+  lacquered.clearcoat = 1;
+  core::Material velvet = plastic;
+  velvet.sheenColor = Vec3(0.8f);
+  velvet.sheenRoughness = 0.4f;
+  velvet.clearcoat = 0.5f;
+  velvet.clearcoatRoughness = 0.4f;
+  core::Material pearl = lacquered;
+  pearl.metallic = 0.5f;
+  pearl.roughness = 0;
+  pearl.iridescence = 1;
+  pearl.anisotropy = 0.7f;
+  core::Material coatedGlass = tests::glassMaterial(1.5f, 0.3f);
+  coatedGlass.clearcoat = 1;
+  coatedGlass.sheenColor = Vec3(0.3f);
+  core::Material amber = tests::glassMaterial(1.5f, 0);
+  amber.attenuationColor = Vec3(0.5f, 0.4f, 0.2f);
+  amber.attenuationDistance = 1;
+  core::Material crystal = tests::glassMaterial(1.5f, 0);
+  crystal.dispersion = 5;
+  core::Material ward = tests::diffuseMaterial(Vec3(0.4f));
+  ward.ward = core::WardLobe{Vec3(0.4f), Vec3(0.4f), 0.2f, 0.1f};
+  for (const core::Material& material :
+       {plastic, mixed, tests::metalMaterial(Vec3(0.7f), 0.6f), tests::glassMaterial(1.5f, 0),
+        tests::glassMaterial(1.5f, 0.4f), lacquered, velvet, pearl, coatedGlass, amber, crystal, ward}) {
     SceneMaker m;
     m.box(m.material(tests::diffuseMaterial(Vec3(0), Vec3(1))), 0, Vec3(-3), Vec3(3), true);
     m.sphere(m.material(material), 1, Vec3(0), 1, 32);
-    World world(m.scene, planOf(16));
+    core::Plan plan = core::makePlan(m.scene);
+    plan.recursionDepth = 16;
+    World world(m.scene, plan);
     const core::IlluminationMaps maps = constantMaps(kHalfPi);
     world.setMaps(&maps);
     CorrectiveOptions options;
@@ -142,7 +167,9 @@ TEST(CorrectiveTracer, BasePlusCorrectionIsTheTracedImageWhereTheMapsAreExact) {
       }
     }
     EXPECT_NEAR(corrected / traced, 1, 0.012)
-        << "metallic " << material.metallic << " roughness " << material.roughness;
+        << "metallic " << material.metallic << " roughness " << material.roughness << " coat "
+        << material.clearcoat << " sheen " << material.sheenColor.x << " dispersion " << material.dispersion
+        << " Ward " << material.ward.has_value() << " attenuation " << material.attenuationColor.x;
   }
 }
 
