@@ -101,8 +101,9 @@ void checkContents(const Primitive& primitive, Repairs& repairs) {
       checkUnitLength(primitive.element, *accessor, name == "TANGENT", repairs);
     if (isSet(name, "COLOR_") && accessor->componentType == kFloat) {
       std::uint64_t outside = 0;
+      const std::size_t components = accessor->components;
       forEachElement(*accessor, [&](std::uint64_t, const float* x) {
-        for (std::size_t c = 0; c < accessor->components; ++c) outside += !(x[c] >= 0 && x[c] <= 1);
+        for (std::size_t c = 0; c < components; ++c) outside += !(x[c] >= 0 && x[c] <= 1);
       });
       if (outside > 0)
         repairs.add("vertex colours out of range were clamped", primitive.element.path(), outside);
