@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "core/error.h"
 #include "core/scene/load.h"
 
 namespace saccade::fuzz {
@@ -35,11 +34,8 @@ const ScratchFolder& scratch() {
   return folder;
 }
 
-void loadOrRefuse(const std::filesystem::path& file) {
-  try {
-    core::loadScene(file, {});
-  } catch (const core::Error&) {
-  }
+void loadScene(const std::filesystem::path& file) {
+  mayRefuse([&] { core::loadScene(file, {}); });
 }
 
 }  // namespace saccade::fuzz

@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "core/error.h"
+
 namespace saccade::fuzz {
 
 /// A folder in memory (/dev/shm), gone at exit.
@@ -27,8 +29,17 @@ class ScratchFolder {
 /// The process's own folder.
 const ScratchFolder& scratch();
 
-/// Loads the file as a scene. A refusal (core::Error) is a good answer; any other exception ends the process,
-/// which the fuzzer reports.
-void loadOrRefuse(const std::filesystem::path& file);
+/// Runs a reader. A refusal (core::Error) is a good answer; any other exception ends the process, which the
+/// fuzzer reports.
+template <class Read>
+void mayRefuse(const Read& read) {
+  try {
+    read();
+  } catch (const core::Error&) {
+  }
+}
+
+/// Loads the file as a scene.
+void loadScene(const std::filesystem::path& file);
 
 }  // namespace saccade::fuzz

@@ -72,6 +72,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  saccade::fuzz::loadOrRefuse(saccade::fuzz::scratch().write("scene.glb", {data, size}));
+  saccade::fuzz::loadScene(saccade::fuzz::scratch().write("scene.glb", {data, size}));
   return 0;
 }

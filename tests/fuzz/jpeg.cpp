@@ -1,7 +1,8 @@
 // A JPEG in memory.
-#include "tests/fuzz/decode.h"
+#include "core/image_io.h"
+#include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  saccade::fuzz::decodeOrRefuse({data, size});
+  saccade::fuzz::mayRefuse([&] { saccade::core::decodeImage({data, size}, "image"); });
   return 0;
 }

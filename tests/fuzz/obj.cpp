@@ -10,6 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t* mark = std::search(data, end, kMark.begin(), kMark.end());
   const std::uint8_t* library = mark == end ? end : mark + kMark.size();
   saccade::fuzz::scratch().write("m.mtl", {library, end});
-  saccade::fuzz::loadOrRefuse(saccade::fuzz::scratch().write("scene.obj", {data, mark}));
+  saccade::fuzz::loadScene(saccade::fuzz::scratch().write("scene.obj", {data, mark}));
   return 0;
 }

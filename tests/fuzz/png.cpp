@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/fuzz/decode.h"
+#include "core/image_io.h"
+#include "tests/fuzz/fuzz_file.h"
 
 namespace {
 
@@ -40,6 +41,6 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  saccade::fuzz::decodeOrRefuse({data, size});
+  saccade::fuzz::mayRefuse([&] { saccade::core::decodeImage({data, size}, "image"); });
   return 0;
 }
