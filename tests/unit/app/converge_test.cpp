@@ -27,6 +27,7 @@ void PrintTo(const SceneCase& c, std::ostream* os) { *os << c.name; }
 const SceneCase kScenes[] = {{"cornell.glb", false},
                              {"table.glb", false},
                              {"gallery.glb", false},
+                             {"ward.glb", false},
                              {"scenes/cornell/CornellBox-Sphere.obj", true},
                              {"scenes/rooms/glass-table.glb", true},
                              {"references/cycles/cornell_glossy.glb", true}};
