@@ -8,6 +8,7 @@
 
 #include "core/image_io.h"
 #include "core/scene/confined_file.h"
+#include "core/scene/repairs.h"
 
 namespace saccade::core {
 namespace {
@@ -73,9 +74,6 @@ void opaque(const tinyobj::material_t& from, Material& m) {
   m.roughness = roughnessOf(static_cast<float>(from.shininess));
 }
 
-/// A number of the PBR extension: those out of range are taken to its end, what is no number to 0.
-float unit(tinyobj::real_t x) { return x > 0 ? std::min(static_cast<float>(x), 1.0f) : 0.0f; }
-
 /// The material uses the PBR extension of MTL. A property that is absent reads as 0, so a polished one of
 /// nothing but `Pr 0` is told by its Ns alone, as exporters write it beside.
 bool isPhysical(const tinyobj::material_t& from) {
@@ -83,7 +81,14 @@ bool isPhysical(const tinyobj::material_t& from) {
          from.anisotropy > 0 || !from.roughness_texname.empty() || !from.metallic_texname.empty();
 }
 
-void physical(const tinyobj::material_t& from, Material& m) {
+/// Numbers outside [0, 1] are taken to its end, and counted.
+void physical(const tinyobj::material_t& from, Material& m, Repairs& repairs) {
+  const auto unit = [&](tinyobj::real_t x) {
+    const float kept = x > 0 ? std::min(static_cast<float>(x), 1.0f) : 0.0f;
+    if (kept != static_cast<float>(x))
+      repairs.add("material factors out of range were clamped", "material " + from.name);
+    return kept;
+  };
   if (isGlass(from.illum)) {
     glass(from, m);
   } else {
@@ -95,7 +100,8 @@ void physical(const tinyobj::material_t& from, Material& m) {
   m.clearcoat = unit(from.clearcoat_thickness);
   m.clearcoatRoughness = unit(from.clearcoat_roughness);
   m.anisotropy = unit(from.anisotropy);
-  m.anisotropyRotation = 2 * kPi * unit(from.anisotropy_rotation);
+  if (std::isfinite(from.anisotropy_rotation))
+    m.anisotropyRotation = 2 * kPi * static_cast<float>(from.anisotropy_rotation);
   m.sheenColor = Vec3(unit(from.sheen));
   m.sheenRoughness = kSheenRoughness;
 }
@@ -123,8 +129,8 @@ ImageRgba8 packed(const ImageRgba8& green, const ImageRgba8& blue) {
 
 class Converter {
  public:
-  Converter(const std::filesystem::path& folder, Scene& scene, LoadBudget& budget)
-      : folder_(folder), scene_(scene), budget_(budget) {}
+  Converter(const std::filesystem::path& folder, Scene& scene, LoadBudget& budget, Repairs& repairs)
+      : folder_(folder), scene_(scene), budget_(budget), repairs_(repairs) {}
 
   Material convert(const tinyobj::material_t& from) {
     Material m;
@@ -132,7 +138,7 @@ class Converter {
     m.metallic = 0;
     m.doubleSided = true;  // OBJ has no notion of a back side
     if (isPhysical(from)) {
-      physical(from, m);
+      physical(from, m, repairs_);
     } else if (isGlass(from.illum)) {
       glass(from, m);
     } else {
@@ -224,6 +230,7 @@ class Converter {
   const std::filesystem::path& folder_;
   Scene& scene_;
   LoadBudget& budget_;
+  Repairs& repairs_;
   std::map<std::tuple<std::string, bool, bool>, int> made_;              ///< by name, sRGB, clamped
   std::map<std::tuple<std::string, std::string, bool>, Packed> packed_;  ///< by names, clamped
 };
@@ -232,8 +239,10 @@ class Converter {
 
 void convertObjMaterials(const std::vector<tinyobj::material_t>& materials,
                          const std::filesystem::path& folder, Scene& scene, LoadBudget& budget) {
-  Converter converter(folder, scene, budget);
+  Repairs repairs;
+  Converter converter(folder, scene, budget, repairs);
   for (const tinyobj::material_t& m : materials) scene.materials.push_back(converter.convert(m));
+  repairs.report(scene.warnings);
 }
 
 }  // namespace saccade::core

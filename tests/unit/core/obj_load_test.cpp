@@ -192,10 +192,14 @@ TEST(ObjMaterials, ThePhysicallyBasedExtension) {
   EXPECT_EQ(m.anisotropy, 0.5f);
   EXPECT_FLOAT_EQ(m.anisotropyRotation, kPi / 2);
   EXPECT_EQ(m.emission, Vec3(1, 2, 3));
-  const Material frosted = materialOf("Tf 1 1 1\nNi 1.5\nillum 6\nPr 0.25\nPc 9\n");
+  const Scene scene = load(std::string("mtllib a.mtl\n") + kQuad + "usemtl m\nf 1 2 3 4\n",
+                           "newmtl m\nTf 1 1 1\nNi 1.5\nillum 6\nPr 0.25\nPc 9\nPs -1\n");
+  const Material& frosted = scene.materials[0];
   EXPECT_EQ(frosted.transmission, 1);
   EXPECT_EQ(frosted.roughness, 0.25f);
   EXPECT_EQ(frosted.clearcoat, 1);
+  EXPECT_EQ(frosted.sheenColor, Vec3(0));
+  EXPECT_TRUE(warned(scene, "2 material factors out of range were clamped (first: material m)"));
 }
 
 TEST(ObjMaterials, TextureOptionsPlaceClampAndScale) {
