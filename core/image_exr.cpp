@@ -68,7 +68,12 @@ std::array<std::string, 3> pickChannels(const Imf::ChannelList& channels, const 
   if (names.size() == 1) return {names[0], names[0], names[0]};
   if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
     return {"R", "G", "B"};
-  throw Error(name + ": EXR needs channels R, G, B or exactly one channel");
+  for (const std::string& red : names) {
+    const std::string layer = red.ends_with(".R") ? red.substr(0, red.size() - 1) : "";
+    if (!layer.empty() && channels.findChannel(layer + "G") && channels.findChannel(layer + "B"))
+      return {red, layer + "G", layer + "B"};
+  }
+  throw Error(name + ": EXR needs channels R, G, B, a layer of them or exactly one channel");
 }
 
 ImageRgb readPixels(Imf::InputFile& in, const std::string& name, LoadBudget& budget) {

@@ -35,7 +35,8 @@ void writePng(const std::filesystem::path& file, const ImageRgba8& image);
 std::vector<std::uint8_t> encodeJpeg(const ImageRgba8& image, int quality);
 std::vector<std::uint8_t> encodePng(const ImageRgba8& image);
 
-/// Linear RGB (R, G, B float channels; one channel reads as grey). Flat scanline NONE/RLE/ZIP only.
+/// Linear RGB (R, G, B channels, of the first layer that has them if the
+/// image itself has none; one channel reads as grey). Flat scanline NONE/RLE/ZIP only.
 ImageRgb readExr(const std::filesystem::path& file);
 /// The pixels' bytes stay charged to `budget`.
 ImageRgb readExr(const std::filesystem::path& file, LoadBudget& budget);

@@ -217,7 +217,7 @@ void checkMaterialNeeds(const Primitive& primitive, const Json& material, Repair
   forEachTexture(material,
                  [&](std::uint64_t set) { lacks |= !primitive.has("TEXCOORD_" + std::to_string(set)); });
   if (lacks)
-    repairs.add("primitives lack the UV set that a texture of their material uses; (0, 0) is taken",
+    repairs.add("primitives lack the UV set that a texture of their material uses; their first is taken",
                 primitive.element.path());
   const Json& extensions = material.contains("extensions") ? material["extensions"] : material;
   const bool anisotropic = extensions.contains("KHR_materials_anisotropy");

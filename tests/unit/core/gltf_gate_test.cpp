@@ -49,28 +49,6 @@ TEST(GltfGate, TheUnbentFileLoads) {
   EXPECT_EQ(refusalOf([](GltfBuilder&) {}), "");
 }
 
-TEST(GltfGate, TruncationsAreRefused) {
-  TemporaryFolder folder;
-  const std::string whole = GltfBuilder().glb();
-  for (std::size_t n = 0; n < whole.size(); n += 3) {
-    write(folder / "cut.glb", whole.substr(0, n));
-    EXPECT_NE(refusal(folder / "cut.glb"), "") << n;
-  }
-}
-
-TEST(GltfGate, FlippedBytesNeverCrash) {
-  TemporaryFolder folder;
-  const std::string whole = GltfBuilder().glb();
-  int refused = 0;
-  for (std::size_t n = 0; n < whole.size(); n += 3) {
-    std::string flipped = whole;
-    flipped[n] = static_cast<char>(flipped[n] ^ (1 << n % 8));
-    write(folder / "flipped.glb", flipped);
-    refused += !refusal(folder / "flipped.glb").empty();
-  }
-  EXPECT_GT(refused, 40);
-}
-
 TEST(GltfGate, Versions) {
   EXPECT_REFUSED("1.0", [](GltfBuilder& b) { b.json["asset"]["version"] = "1.0"; });
   EXPECT_REFUSED("lacks 'asset'", [](GltfBuilder& b) { b.json.erase("asset"); });

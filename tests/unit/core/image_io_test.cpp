@@ -12,6 +12,7 @@
 #include <limits>
 #include <random>
 #include <thread>
+#include <tuple>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -292,6 +293,80 @@ TEST(Exr, DamagedAndForeignFilesAreRefused) {
   EXPECT_THROW(readExr(folder / "piz.exr"), Error);
   EXPECT_THROW(readExr(folder.path()), Error);
   EXPECT_THROW(readExr(folder / "absent.exr"), Error);
+}
+
+TEST(Exr, EveryFlippedBitAndEveryCutGivesAnImageOrAnError) {
+  TemporaryFolder folder;
+  writeExr(folder / "a.exr", radiance(3, 2));
+  const Bytes whole = readWholeFile(folder / "a.exr");
+  const auto read = [&](std::span<const std::uint8_t> bytes) {
+    writeFileAtomically(folder / "b.exr", bytes);
+    try {
+      return readExr(folder / "b.exr").pixels().size();
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("b.exr: "), std::string::npos) << e.what();
+      return std::size_t{0};
+    }
+  };
+  for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_EQ(read(std::span(whole).first(n)), 0u) << n;
+  std::size_t refused = 0;
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    Bytes damaged = whole;
+    damaged[bit / 8] ^= static_cast<std::uint8_t>(1 << bit % 8);
+    refused += read(damaged) == 0;
+  }
+  EXPECT_GT(refused, whole.size());
+}
+
+/// An EXR header with the attributes as given, closed, without pixels.
+Bytes exrHeader(const std::vector<std::tuple<std::string, std::string, std::string>>& attributes) {
+  std::string text("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  for (const auto& [name, type, value] : attributes) {
+    const auto size = static_cast<std::uint32_t>(value.size());
+    text += name + '\0' + type + '\0' + std::string(reinterpret_cast<const char*>(&size), 4) + value;
+  }
+  text += '\0';
+  return {text.begin(), text.end()};
+}
+
+TEST(Exr, HostileHeadersAreRefusedBeforeTheyCost) {
+  const std::string channel("R\0\2\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0", 18), end(1, '\0'), zip(1, '\3');
+  const auto window = [](std::int32_t right, std::int32_t bottom) {
+    const std::int32_t box[4] = {0, 0, right, bottom};
+    return std::string(reinterpret_cast<const char*>(box), sizeof box);
+  };
+  std::string many;
+  for (int i = 0; i < 65; ++i) many += "c" + std::to_string(i) + channel.substr(1);
+  const auto refusal = [&](const Bytes& bytes) {
+    TemporaryFolder folder;
+    writeFileAtomically(folder / "a.exr", bytes);
+    LoadLimits little;
+    little.memoryBytes = 1 << 20;
+    LoadBudget budget(little, "a.exr");
+    try {
+      readExr(folder / "a.exr", budget);
+      return std::string();
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+  };
+  const auto expect = [&](const Bytes& bytes, const char* part) {
+    EXPECT_NE(refusal(bytes).find(part), std::string::npos) << refusal(bytes);
+  };
+  const auto header = [&](const std::string& channels, const std::string& box) {
+    return exrHeader({{"channels", "chlist", channels},
+                      {"compression", "compression", zip},
+                      {"dataWindow", "box2i", box}});
+  };
+  expect(header(channel + end, window(9999, 9999)), "cannot hold 10000 x 10000 pixels");
+  expect(header(channel + end, window(2147483647, 0)), "pixels are supported");
+  expect(header(channel + end, window(-2, 5)), "pixels are supported");
+  expect(header(many + end, window(0, 0)), "more than 64 channels");
+  expect(header(channel.substr(0, 9), window(0, 0)), "list of channels is cut off");
+  expect(exrHeader({{"compression", "compression", zip}}), "lacks 'channels'");
+  Bytes lying = exrHeader({{"comments", "string", "abcd"}});
+  lying[8 + 9 + 7 + 3] = 0x7f;
+  expect(lying, "attribute 'comments' reaches beyond the file");
 }
 
 TEST(Files, FailedWritesLeaveNothingBehind) {
