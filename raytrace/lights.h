@@ -1,41 +1,22 @@
 // Lights: emissive triangles grouped by object, punctual lights, and the environment. Importance sampling in
 // steps (Haber 2001, section 4.3: "importance sampling for area light sources"): the environment or the rest
-// by estimated irradiance; of the rest a group by its estimated contribution at the point (at most kFewGroups
-// groups) or by power, then a triangle by power, then a point by area.
+// by estimated irradiance; of few lights a group by its estimated contribution at the point, then a triangle
+// by power; of many a triangle (or punctual light) by a light tree; then a point by area.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "raytrace/alias_table.h"
 #include "raytrace/environment_light.h"
+#include "raytrace/light_tree.h"
 #include "raytrace/ray.h"
 
 namespace saccade::raytrace {
 
 class World;
-
-/// Walker's alias table over weights >= 0; all zero = empty.
-class AliasTable {
- public:
-  AliasTable() = default;
-  explicit AliasTable(std::span<const double> weights);
-  bool empty() const { return slots_.empty(); }
-  /// u in [0, 1); `rest` gets a fresh number in [0, 1).
-  std::uint32_t sample(float u, float& rest) const;
-  float probability(std::uint32_t i) const { return slots_[i].probability; }
-  double total() const { return total_; }
-
- private:
-  struct Slot {
-    float keep = 1;
-    std::uint32_t alias = 0;
-    float probability = 0;
-  };
-  std::vector<Slot> slots_;
-  double total_ = 0;
-};
 
 struct LightSample {
   Vec3 direction{0};   ///< unit, towards the light
@@ -52,20 +33,31 @@ struct EmissionSample {
   Vec3 direction{0, -1, 0};
   Vec3 flux{0};  ///< watts this photon stands for when one photon is emitted: divide by the number of photons
   float offset = 0;  ///< for offsetOrigin; 0 for punctual lights
+  float range = 0;   ///< metres, of a point or spot light; 0 = unlimited: see rangeFactor
 };
+
+/// glTF's spot falloff, [0, 1]; 1 for other lights.
+float spotFactor(const core::PunctualLight& light, float cosAxis);
+
+/// What KHR_lights_punctual's range leaves of a point or spot light's inverse square at a distance: its
+/// recommended window, [0, 1]; 1 where range is 0.
+float rangeFactor(float range, float distance);
 
 /// Group weights at one point, kept for the pdf of rays that leave it.
 struct LightChoice {
   static constexpr int kFewGroups = 16;
   Vec3 point{0};
-  float cumulative[kFewGroups] = {};
-  float environment = 0;  ///< probability of sampling the environment instead of the groups
-  bool byPower = false;
+  float cumulative[kFewGroups] = {};  ///< not with the tree
+  float environment = 0;              ///< probability of sampling the environment instead of the groups
+  float parallel = 0;                 ///< with the tree: probability of a directional light instead of it
+  bool byTree = false;
 };
 
 class Lights {
  public:
   static constexpr int kFewGroups = LightChoice::kFewGroups;
+  /// More emissive triangles than these, or more groups than kFewGroups, are chosen by the tree.
+  static constexpr std::size_t kFewTriangles = 1024;
 
   /// `world`'s records must be filled; sets their `light` through the span of indices returned by lightOf().
   Lights(const core::Scene& scene, const World& world);
@@ -79,6 +71,7 @@ class Lights {
   /// Null where the scene has none or a black one.
   const EnvironmentLight* environment() const { return environment_.get(); }
 
+  bool byTree() const { return !tree_.empty() || !parallelGroups_.empty(); }
   LightChoice choose(const Vec3& point) const;
   /// False when the sample carries no light (behind, grazing, no area).
   bool sample(const LightChoice& choice, float uLight, const Vec2& u, LightSample& out) const;
@@ -116,10 +109,14 @@ class Lights {
   float estimate(const Group& group, const Vec3& point) const;
   bool sampleEnvironment(const Vec2& u, LightSample& out) const;
   float groupProbability(const LightChoice& choice, std::uint32_t group) const;
-  bool sampleTriangle(const Group& group, const Vec3& point, float uTriangle, const Vec2& u,
+  void buildTree();
+  bool sampleByGroup(const LightChoice& choice, float uLight, const Vec2& u, LightSample& out) const;
+  bool sampleByTree(const LightChoice& choice, float uLight, const Vec2& u, LightSample& out) const;
+  /// `choice`: the probability with which this triangle was drawn.
+  bool sampleTriangle(const Emissive& e, float choice, const Vec3& point, const Vec2& u,
                       LightSample& out) const;
   bool samplePunctual(const Group& group, const Vec3& point, LightSample& out) const;
-  float environmentShare(const LightChoice& choice, float others) const;
+  float environmentShare(float others) const;
   // `probability`: with which it came to be asked; the flux is divided by it.
   EmissionSample emitFromTriangle(const Group& group, float probability, float uTriangle,
                                   const Vec2& uPosition, const Vec2& uDirection) const;
@@ -133,10 +130,19 @@ class Lights {
   std::vector<Emissive> emissive_;
   std::vector<Group> groups_;
   bool hasPunctual_ = false;
-  AliasTable groupTable_;                          ///< by power
+  LightTree tree_;                             ///< where there are many
+  std::vector<std::uint32_t> treeGroups_;      ///< groups of the tree's lamps behind the emissive triangles
+  std::vector<std::uint32_t> parallelGroups_;  ///< with the tree: directional lights
+  AliasTable parallelTable_;                   ///< of those, by irradiance
   std::unique_ptr<EnvironmentLight> environment_;  ///< null: none that shines
   AliasTable emissionTable_;                       ///< by power; after the groups the environment
 };
+
+/// Barycentric u, v of a point that is uniform over a triangle.
+inline Vec2 uniformTriangle(const Vec2& u) {
+  const float root = std::sqrt(u.x);
+  return {1 - root, u.y * root};
+}
 
 /// The shadow ray from a surface point to a light sample; it ends before the light.
 struct Surface;

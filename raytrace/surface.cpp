@@ -179,6 +179,22 @@ Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, 
   return makeSurface(world, hit, front ? -n : n);
 }
 
+Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v) {
+  const TriangleRecord& record = world.record(triangle);
+  Hit hit;
+  hit.triangle = triangle;
+  hit.u = u;
+  hit.v = v;
+  return textureUv(world, hit, record, interpolate(record.uv0, u, v),
+                   world.materialOf(record.object).emissionTexture);
+}
+
+Vec3 emissionAt(const World& world, std::uint32_t triangle, float u, float v) {
+  const CompiledMaterial& m = world.materialOf(world.record(triangle).object);
+  if (!m.emissionTexture) return m.emission;
+  return m.emission * Vec3(m.emissionTexture.sample(emissionUv(world, triangle, u, v)));
+}
+
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   const TriangleRecord& record = world.record(hit.triangle);
   const CompiledMaterial& m = world.materialOf(hit.object);

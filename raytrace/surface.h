@@ -40,6 +40,11 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
 /// The barycentric point of a triangle, seen from its front (or back) along its normal: for map baking.
 Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, bool front);
 
+/// Where the emission texture is read at a triangle's barycentric point.
+Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v);
+/// Radiance that the triangle emits there.
+Vec3 emissionAt(const World& world, std::uint32_t triangle, float u, float v);
+
 /// Emission + base formula (core/scene/specular_albedo.h) under the illumination maps, times coverage for
 /// blend: the radiance that the base layer shows at this hit. Cheap: reads one record and its textures.
 struct BaseLight {

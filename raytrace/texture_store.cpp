@@ -108,7 +108,7 @@ TextureView TextureStore::view(const core::TextureSlot& slot) const {
 }
 
 core::Vec4 TextureView::sample(const Vec2& meshUv) const {
-  const Vec2 uv = transformed ? uvMatrix * Vec3(meshUv, 1) : meshUv;
+  const Vec2 uv = place(meshUv);
   const float x = wrapCoordinate(uv.x, wrapS) * static_cast<float>(width);
   const float y = wrapCoordinate(uv.y, wrapT) * static_cast<float>(height);
   const auto fetch = [&](int column, int row) {

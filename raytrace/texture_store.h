@@ -24,6 +24,8 @@ struct TextureView {
   glm::mat3x2 uvMatrix{1};  ///< read only where `transformed` (core/scene/texture_transform.h)
 
   explicit operator bool() const { return texels != nullptr; }
+  /// Where a mesh's uv falls in the texture, wrapping left out.
+  Vec2 place(const Vec2& meshUv) const { return transformed ? uvMatrix * Vec3(meshUv, 1) : meshUv; }
   /// Bilinear (or nearest) RGBA at the mesh's uv, which KHR_texture_transform moves first; colour decoded to
   /// linear. v runs downwards. Beyond +-1e6 and for NaN, uv = 0.
   core::Vec4 sample(const Vec2& meshUv) const;

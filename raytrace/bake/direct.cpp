@@ -59,7 +59,7 @@ void forEachLight(const LightChoice& choice, float uLight, Visit&& take) {
   constexpr int kAllOf = 4;
   const auto groups = std::find_if(choice.cumulative + 1, choice.cumulative + LightChoice::kFewGroups,
                                    [&](const float& c) { return c < *(&c - 1); });
-  if (choice.byPower || groups - choice.cumulative > kAllOf) {
+  if (choice.byTree || groups - choice.cumulative > kAllOf) {
     visit(uLight, 1.0f);
     return;
   }

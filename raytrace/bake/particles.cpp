@@ -50,6 +50,7 @@ class Tracer {
         ray = surface.leave(ray.direction);
         continue;
       }
+      if (direct) weight *= rangeFactor(start.range, glm::length(surface.position - start.origin));
       direct = false;
       if (!surface.scatters() || !scatter(surface, random, ray, weight, channel)) return;
       if (world_.attenuates()) inside.leave(surface, ray.direction);

@@ -7,6 +7,7 @@
 
 #include "raytrace/surface.h"
 #include "raytrace/world.h"
+#include "tests/unit/raytrace/irradiance.h"
 #include "tests/unit/raytrace/test_scene.h"
 
 namespace saccade::raytrace {
@@ -14,54 +15,6 @@ namespace {
 
 using tests::planOf;
 using tests::SceneMaker;
-
-struct Estimate {
-  double mean, sigma;
-};
-
-/// Irradiance at a point with a normal, by light sampling; blockers count.
-Estimate irradianceBySampling(const World& world, const Vec3& point, const Vec3& normal, int n) {
-  std::mt19937 engine(21);
-  std::uniform_real_distribution<float> u(0, 1);
-  RayCounters counters;
-  Surface from;
-  from.position = point;
-  from.ng = from.ns = normal;
-  const LightChoice choice = world.lights().choose(point);
-  double sum = 0, squares = 0;
-  for (int i = 0; i < n; ++i) {
-    LightSample s;
-    double e = 0;
-    if (world.lights().sample(choice, u(engine), {u(engine), u(engine)}, s)) {
-      const float cosine = std::max(0.0f, glm::dot(s.direction, normal));
-      if (cosine > 0) e = s.radiance.x * cosine / s.pdf * world.transmittance(shadowRay(from, s), counters);
-    }
-    sum += e;
-    squares += e * e;
-  }
-  const double mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n)};
-}
-
-/// Irradiance from a polygon of radiance 1 above the horizon of `normal` (Lambert's formula), after clipping.
-double polygonIrradiance(const Vec3& point, const Vec3& normal, const std::vector<Vec3>& corners) {
-  std::vector<glm::dvec3> clipped;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec3 a(corners[i] - point), b(corners[(i + 1) % corners.size()] - point), n(normal);
-    const double da = glm::dot(a, n), db = glm::dot(b, n);
-    if (da >= 0) clipped.push_back(a);
-    if ((da > 0) != (db > 0) && da != db) clipped.push_back(a + (b - a) * (da / (da - db)));
-  }
-  double sum = 0;
-  for (std::size_t i = 0; i < clipped.size(); ++i) {
-    const glm::dvec3 a = glm::normalize(clipped[i]), b = glm::normalize(clipped[(i + 1) % clipped.size()]);
-    const glm::dvec3 cross = glm::cross(a, b);
-    if (glm::length(cross) < 1e-12) continue;
-    sum += std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) *
-           glm::dot(glm::normalize(cross), glm::dvec3(normal));
-  }
-  return std::fabs(sum) / 2;
-}
 
 core::Material lamp(float radiance) { return tests::diffuseMaterial(Vec3(0), Vec3(radiance)); }
 
@@ -228,6 +181,93 @@ TEST(Lights, EmissionTexturesWeighTheTriangles) {
   const double exact =
       4 * polygonIrradiance(point, {0, 1, 0}, {{0.6f, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0.6f, 1, 1}});
   EXPECT_NEAR(e.mean, exact, 4 * e.sigma + 1e-4);
+}
+
+TEST(Lights, ABrightPatchOnABlackMeshIsNotLost) {
+  // One triangle pair spans 512 x 512 texels, black but for 3 x 3 of them; uv0 = (x, z).
+  for (const bool second : {false, true}) {
+    SceneMaker m;
+    core::Texture t;
+    t.image = core::ImageRgba8(512, 512, {0, 0, 0, 255});
+    for (int y = 100; y < 103; ++y) {
+      for (int x = 301; x < 304; ++x) t.image.at(x, y) = {255, 255, 255, 255};
+    }
+    t.nearest = true;
+    m.scene.textures.push_back(t);
+    core::Material textured = lamp(1000);
+    textured.emissionTexture.texture = 0;
+    textured.emissionTexture.uvSet = second ? 1 : 0;
+    m.quad(m.material(textured), 0, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
+    if (second) {
+      core::Mesh& mesh = m.scene.meshes.back();
+      mesh.uv1 = mesh.uv0;
+      for (Vec2& uv : mesh.uv0) uv = Vec2(0);  // all black
+    }
+    const World world(m.scene, planOf());
+    EXPECT_GE(world.lights().emissiveCount(), 1u);
+    const Vec3 point(0.5f, 0, 0.5f);
+    const Estimate e = irradianceBySampling(world, point, {0, 1, 0}, 4000000);
+    const auto at = [](float x, float z) { return Vec3(x / 512, 1, z / 512); };
+    const double exact =
+        1000 * polygonIrradiance(point, {0, 1, 0}, {at(301, 100), at(304, 100), at(304, 103), at(301, 103)});
+    EXPECT_NEAR(e.mean, exact, 4 * e.sigma);
+    EXPECT_LT(e.sigma, 0.15 * exact);
+  }
+}
+
+TEST(Lights, RangeIsTheRecommendedWindow) {
+  SceneMaker m;
+  m.quad(m.material(tests::diffuseMaterial(Vec3(1))), 0, {-5, -1, -5}, {0, 0, 10}, {10, 0, 0});
+  core::PunctualLight light;
+  light.position = {0, 2, 0};
+  light.intensity = Vec3(8);
+  light.range = 4;
+  m.scene.lights = {light};
+  const World world(m.scene, planOf());
+  const auto at = [&](float y) { return irradianceBySampling(world, {0, y, 0}, {0, 1, 0}, 10).mean; };
+  EXPECT_NEAR(at(1), 8 * (1 - std::pow(0.25, 4)), 1e-5);
+  EXPECT_NEAR(at(-1), 8.0 / 9 * (1 - std::pow(0.75, 4)), 1e-5);
+  EXPECT_EQ(at(-2), 0);
+  EXPECT_EQ(at(-7), 0);
+  EXPECT_EQ(rangeFactor(0, 1e30f), 1);
+}
+
+TEST(Lights, SpotFalloffAlsoWhereTheConesAreOne) {
+  for (const float inner : {0.95f, 0.8f}) {
+    core::PunctualLight spot;
+    spot.type = core::PunctualLight::Type::spot;
+    spot.cosInner = inner;
+    spot.cosOuter = 0.8f;
+    for (const float c : {1.0f, 0.96f, 0.9f, 0.85f, 0.79f, 0.0f, -1.0f}) {
+      const float t = (c - 0.8f) / std::max(0.001f, inner - 0.8f), s = std::clamp(t, 0.0f, 1.0f);
+      EXPECT_NEAR(spotFactor(spot, c), s * s, 1e-6) << c;
+    }
+  }
+}
+
+TEST(Lights, DirectionalParticlesCoverTheScene) {
+  SceneMaker m;
+  m.box(m.material(tests::diffuseMaterial(Vec3(1))), 0, {0, 0, 0}, {4, 1, 2});
+  core::PunctualLight sun;
+  sun.type = core::PunctualLight::Type::directional;
+  sun.direction = glm::normalize(Vec3(1, -2, 0.5f));
+  sun.intensity = Vec3(3);
+  m.scene.lights = {sun};
+  const World world(m.scene, planOf());
+  std::mt19937 engine(24);
+  std::uniform_real_distribution<float> u(0, 1);
+  constexpr int kPhotons = 400000;
+  double flux[2][2] = {};  // through quarters of the lid
+  for (int i = 0; i < kPhotons; ++i) {
+    const EmissionSample s =
+        world.lights().sampleEmission(u(engine), {u(engine), u(engine)}, {u(engine), u(engine)});
+    const Vec3 at = s.origin + s.direction * ((1 - s.origin.y) / s.direction.y);
+    if (at.x < 0 || at.x > 4 || at.z < 0 || at.z > 2) continue;
+    flux[at.x > 2][at.z > 1] += s.flux.x / kPhotons;
+  }
+  for (const auto& half : flux) {
+    for (const double f : half) EXPECT_NEAR(f, 3 * -sun.direction.y * 2, 0.03 * 6);
+  }
 }
 
 TEST(AliasTable, FollowsTheWeights) {
