@@ -1,0 +1,93 @@
+// One corrective sub-sample's way through the scene.
+#pragma once
+
+#include <optional>
+
+#include "core/math/random.h"
+#include "raytrace/bsdf.h"
+#include "raytrace/corrective_tracer.h"
+#include "raytrace/lights.h"
+#include "raytrace/medium.h"
+#include "raytrace/surface.h"
+
+namespace saccade::raytrace {
+
+/// How a rough ray was made, for the weight of the light it may hit.
+struct RoughRay {
+  const LightChoice* choice = nullptr;
+  float density = 0;  ///< rays times pdf
+};
+
+/// One pixel's one sub-sample.
+class Walk {
+ public:
+  Walk(const World& world, const CorrectiveOptions& options, core::PixelSampler sampler,
+       RayCounters& counters)
+      : world_(world), options_(options), sampler_(sampler), counters_(counters) {}
+
+  /// Radiance that the lobes other than Lambert send back along the ray. `weight`: of this branch in the
+  /// pixel.
+  Vec3 specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  /// Radiance along a ray of a delta.
+  Vec3 incoming(const Ray& ray, int depth, float weight) {
+    Leg leg = send(ray);
+    return received(leg, depth, weight, nullptr);
+  }
+
+ private:
+  /// The solids that the walk is in while it follows one ray: only kept where a solid attenuates.
+  class Following {
+   public:
+    Following(Walk& walk, const Surface& surface, const Vec3& direction) : walk_(walk) {
+      if (!walk.world_.attenuates()) return;
+      before_ = walk.inside_;
+      walk.inside_.leave(surface, direction);
+    }
+    ~Following() {
+      if (before_) walk_.inside_ = *before_;
+    }
+    Following(const Following&) = delete;
+    Following& operator=(const Following&) = delete;
+
+   private:
+    Walk& walk_;
+    std::optional<Inside> before_;
+  };
+
+  /// A ray and what it met.
+  struct Leg {
+    Ray ray;
+    Hit hit;
+    bool met = false;
+    float density = 0;  ///< rays times pdf; 0 when the lights were not sampled as well
+    Vec3 factor{0};
+  };
+  Leg send(const Ray& ray) {
+    Leg leg;
+    leg.ray = ray;
+    leg.met = world_.intersect(ray, leg.hit, counters_);
+    return leg;
+  }
+  /// Radiance that comes back along a leg. `rough` is null for rays of deltas.
+  Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
+  Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
+  Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 branches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 dispersed(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 layeredBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
+  Vec3 branch(const Surface& surface, const BsdfSample& sample, float chance, int depth, float weight);
+  Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight);
+  Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, unsigned lobes, const LightChoice& choice,
+                   float rays, float weight);
+  float emissionWeight(const Hit& hit, const Vec3& direction, float distance, const RoughRay* rough) const;
+  Vec3 environment(const Vec3& direction, const RoughRay* rough) const;
+
+  const World& world_;
+  const CorrectiveOptions& options_;
+  core::PixelSampler sampler_;
+  RayCounters& counters_;
+  Inside inside_;
+  int channel_ = -1;  ///< the only one followed; -1: all
+};
+
+}  // namespace saccade::raytrace
