@@ -151,11 +151,6 @@ Vec3 Bsdf::sampleCosine(const Vec2& u) {
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - u.x))};
 }
 
-BsdfSample Bsdf::toWorld(const LocalSample& local) const {
-  return {glm::normalize(frame_.toWorld(local.direction)), local.weight, local.pdf, local.delta,
-          local.transmitted};
-}
-
 std::optional<BsdfSample> Bsdf::sample(float uLobe, const Vec2& u, unsigned lobes) const {
   if (layered_) return sampleLayered(uLobe, u, lobes);
   const float diffuse = diffuseProbability(lobes);

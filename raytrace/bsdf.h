@@ -98,7 +98,10 @@ class Bsdf {
   float pdfLayered(const Vec3& wi, const Vec3& l, unsigned lobes) const;
   std::optional<BsdfSample> sampleLayered(float uLobe, const Vec2& u, unsigned lobes) const;
   static Vec3 sampleCosine(const Vec2& u);
-  BsdfSample toWorld(const LocalSample& local) const;
+  BsdfSample toWorld(const LocalSample& local) const {
+    return {glm::normalize(frame_.toWorld(local.direction)), local.weight, local.pdf, local.delta,
+            local.transmitted};
+  }
   bool sideAgrees(const Vec3& wiWorld, const Vec3& wiLocal) const;
 
   Frame frame_;
