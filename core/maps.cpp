@@ -14,10 +14,10 @@
 namespace saccade::core {
 namespace {
 
-// The file: magic, version, byte order mark, key, size, layers, photons, quality, texels, charts, checksum of
-// all that precedes it. Numbers in the machine's byte order, which the mark tells.
+// The file: magic, version, byte order mark, key, size, layers, photons, quality, texels, charts, places,
+// checksum of all that precedes it. Numbers in the machine's byte order, which the mark tells.
 constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'M', 'A', 'P', 'S', '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr std::uint32_t kLargestSide = 65536;
 
@@ -113,8 +113,8 @@ void readTexels(Reader& in, IlluminationMaps& maps) {
     in.refuse("holds texels that are not finite");
 }
 
-ObjectCharts readCharts(Reader& in) {
-  ObjectCharts charts;
+MeshCharts readCharts(Reader& in) {
+  MeshCharts charts;
   charts.sourceVertex = in.array<std::uint32_t>();
   charts.uv = in.array<Vec2>();
   charts.indices = in.array<std::uint32_t>();
@@ -201,11 +201,8 @@ void addTexture(ContentHash& hash, const Texture& t) {
 }
 
 /// Corner by corner, so that splitting vertices along chart borders changes nothing.
-void addObject(ContentHash& hash, const Scene& scene, const Object& o) {
-  hash.add(o.material);
-  hash.add(o.closed);
-  hash.add(o.id != 0);
-  const Mesh& m = scene.meshOf(o);
+void addMesh(ContentHash& hash, const Mesh& m) {
+  hash.add(m.instanced);
   hash.add(static_cast<std::uint64_t>(m.indices.size()));
   for (const bool has :
        {m.normals.empty(), m.tangents.empty(), m.uv0.empty(), m.uv1.empty(), m.colors.empty()})
@@ -218,6 +215,14 @@ void addObject(ContentHash& hash, const Scene& scene, const Object& o) {
     if (!m.uv1.empty()) addVector(hash, m.uv1[i]);
     if (!m.colors.empty()) addVector(hash, m.colors[i]);
   }
+}
+
+void addObject(ContentHash& hash, const Object& o) {
+  hash.add(o.material);
+  hash.add(o.closed);
+  hash.add(o.id != 0);
+  hash.add(o.mesh);
+  for (int c = 0; c < 4; ++c) addVector(hash, o.meshToWorld[c]);
 }
 
 void addLight(ContentHash& hash, const PunctualLight& l) {
@@ -248,29 +253,35 @@ Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
   return Vec3(fromHalf(texels[at]), fromHalf(texels[at + 1]), fromHalf(texels[at + 2]));
 }
 
-void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts) {
-  if (charts.size() != scene.objects.size())
-    throw Error(scene.path + ": the charts are for " + std::to_string(charts.size()) +
-                " objects, the scene has " + std::to_string(scene.objects.size()));
-  for (std::size_t o = 0; o < charts.size(); ++o) {
-    Mesh& mesh = scene.meshOf(scene.objects[o]);
-    const ObjectCharts& c = charts[o];
+void applyCharts(Scene& scene, const SceneCharts& charts) {
+  const bool counts =
+      charts.meshes.size() == scene.meshes.size() && charts.places.size() == scene.objects.size();
+  if (!counts)
+    throw Error(scene.path + ": the charts are for " + std::to_string(charts.meshes.size()) + " meshes and " +
+                std::to_string(charts.places.size()) + " objects, the scene has " +
+                std::to_string(scene.meshes.size()) + " and " + std::to_string(scene.objects.size()));
+  for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
+    Mesh& mesh = scene.meshes[m];
+    const MeshCharts& c = charts.meshes[m];
     const bool fits = c.indices.size() == mesh.indices.size() && c.uv.size() == c.sourceVertex.size() &&
                       std::all_of(c.sourceVertex.begin(), c.sourceVertex.end(),
                                   [&](std::uint32_t v) { return v < mesh.positions.size(); });
-    if (!fits)
-      throw Error(scene.path + ": the charts of object '" + scene.objects[o].name + "' do not fit its mesh");
+    if (!fits) throw Error(scene.path + ": the charts of mesh " + std::to_string(m) + " do not fit it");
     mesh = gatherVertices(mesh, c.sourceVertex);
     mesh.lightmapUv = c.uv;
     mesh.indices = c.indices;
   }
+  for (std::size_t o = 0; o < charts.places.size(); ++o)
+    scene.objects[o].lightmapScaleOffset = charts.places[o];
 }
 
 std::uint64_t sceneKey(const Scene& scene) {
   ContentHash hash;
   hash.add(kVersion);
   hash.add(static_cast<std::uint64_t>(scene.objects.size()));
-  for (const Object& o : scene.objects) addObject(hash, scene, o);
+  for (const Object& o : scene.objects) addObject(hash, o);
+  hash.add(static_cast<std::uint64_t>(scene.meshes.size()));
+  for (const Mesh& m : scene.meshes) addMesh(hash, m);
   hash.add(static_cast<std::uint64_t>(scene.materials.size()));
   for (const Material& m : scene.materials) addMaterial(hash, m);
   hash.add(static_cast<std::uint64_t>(scene.textures.size()));
@@ -313,9 +324,10 @@ IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key) 
   std::memcpy(&stated, bytes.data() + body, kSum);
   if (stated != checksum(content)) in.refuse("is damaged or cut off (checksum)");
   readTexels(in, maps);
-  const auto objects = in.number<std::uint64_t>();
-  if (objects > body) in.refuse("states an impossible number of objects");
-  for (std::uint64_t o = 0; o < objects; ++o) maps.charts.push_back(readCharts(in));
+  const auto meshes = in.number<std::uint64_t>();
+  if (meshes > body) in.refuse("states an impossible number of meshes");
+  for (std::uint64_t m = 0; m < meshes; ++m) maps.charts.meshes.push_back(readCharts(in));
+  maps.charts.places = in.array<Vec4>();
   if (!in.atEnd()) in.refuse("has bytes after its end");
   return maps;
 }
@@ -332,12 +344,13 @@ void writeMaps(const std::filesystem::path& file, const IlluminationMaps& maps) 
   out.number(maps.photons);
   out.array(std::vector<char>(maps.quality.begin(), maps.quality.end()));
   out.array(maps.texels);
-  out.number<std::uint64_t>(maps.charts.size());
-  for (const ObjectCharts& c : maps.charts) {
+  out.number<std::uint64_t>(maps.charts.meshes.size());
+  for (const MeshCharts& c : maps.charts.meshes) {
     out.array(c.sourceVertex);
     out.array(c.uv);
     out.array(c.indices);
   }
+  out.array(maps.charts.places);
   out.number(checksum(out.bytes()));
   std::error_code ignored;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);

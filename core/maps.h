@@ -12,18 +12,25 @@
 
 namespace saccade::core {
 
-/// How one object's mesh is cut into charts: its vertices are duplicated along chart borders.
-struct ObjectCharts {
+/// How a mesh is cut into charts: its vertices are duplicated along chart borders.
+struct MeshCharts {
   std::vector<std::uint32_t> sourceVertex;  ///< new vertex -> vertex of the loaded mesh
-  std::vector<Vec2> uv;                     ///< per new vertex, [0, 1]^2
+  std::vector<Vec2> uv;                     ///< per new vertex: Mesh::lightmapUv
   std::vector<std::uint32_t> indices;       ///< 3 per triangle, same triangle order as the loaded mesh
+};
+
+/// All of a scene: the charts of an instanced mesh are cut once, and each of its objects has a block of the
+/// atlas with the same layout.
+struct SceneCharts {
+  std::vector<MeshCharts> meshes;  ///< one per mesh of the scene
+  std::vector<Vec4> places;        ///< one per object: Object::lightmapScaleOffset
 };
 
 struct IlluminationMaps {
   int width = 0, height = 0, layers = 0;
   std::vector<std::uint16_t> texels;  ///< IEEE half, 3 per texel: ((layer * height + y) * width + x) * 3
-  std::vector<ObjectCharts> charts;   ///< one per object of the scene
-  std::string quality;                ///< preview, medium, high
+  SceneCharts charts;
+  std::string quality;  ///< preview, medium, high
   std::uint64_t photons = 0;
   std::uint64_t key = 0;  ///< sceneKey of the scene they were made for
 
@@ -31,9 +38,9 @@ struct IlluminationMaps {
   Vec3 texel(int x, int y, int layer) const;
 };
 
-/// Cuts the scene's meshes as the charts say and fills lightmapUv. Call once, before building Embree or GL
-/// scenes.
-void applyCharts(Scene& scene, const std::vector<ObjectCharts>& charts);
+/// Cuts the scene's meshes as the charts say, fills lightmapUv and places the objects. Call once, before
+/// building Embree or GL scenes. Throws core::Error when charts and scene do not fit together.
+void applyCharts(Scene& scene, const SceneCharts& charts);
 
 /// Hash of all that the maps depend on: geometry, materials, textures, lights, and the format's version.
 std::uint64_t sceneKey(const Scene& scene);

@@ -8,8 +8,8 @@
 
 namespace saccade::raytrace {
 
-/// By triangle: has the same three corners as an earlier one, in any order. Which of the two a ray meets
-/// first would be left to the order in which trees are built.
+/// By triangle: has the same three corners as an earlier one of the same space, in any order. Which of the
+/// two a ray meets first would be left to the order in which trees are built.
 std::vector<bool> findDuplicates(std::span<const TriangleShape> shapes);
 
 }  // namespace saccade::raytrace

@@ -64,7 +64,8 @@ void Lights::addEmissive(const core::Scene& scene) {
     group.first = static_cast<std::uint32_t>(emissive_.size());
     std::vector<double> powers;
     core::Bounds bounds;
-    for (std::uint32_t t = world_.firstTriangle(o); t < world_.firstTriangle(o + 1); ++t) {
+    for (std::uint32_t t = world_.firstTriangle(o); t < world_.firstTriangle(o) + world_.triangleCountOf(o);
+         ++t) {
       const TriangleShape& s = world_.shape(t);
       const Vec3 cross = glm::cross(s.position[1] - s.position[0], s.position[2] - s.position[0]);
       const float area = 0.5f * glm::length(cross);

@@ -22,10 +22,10 @@ struct Ray {
 
 /// Nearest hit. Position = (1 - u - v) p0 + u p1 + v p2.
 struct Hit {
-  std::uint32_t triangle = 0;  ///< index over the whole world (World::record)
+  std::uint32_t triangle = 0;  ///< index over all stored triangles (World::record)
   std::uint32_t object = 0;    ///< index into the scene's objects
   float t = 0, u = 0, v = 0;
-  Vec3 ng{0};  ///< geometric normal, not unit; its front is the triangle's front
+  Vec3 ng{0};  ///< geometric normal in the world, not unit; its front is the triangle's front
 };
 
 class RayLog;
@@ -44,16 +44,18 @@ struct RayCounters {
   }
 };
 
-/// The guard. Embree 3.13.5 as Debian builds it aborts on NaN, Inf, components above 1.8e18 and negative
-/// tNear; a zero or subnormal direction has no meaning. False = the ray is a miss.
-inline bool traceable(const Ray& r) {
-  constexpr float kLargest = 1.8e18f;
-  const auto in = [](float x) { return std::fabs(x) <= kLargest; };  // false for NaN
+inline constexpr float kLargestRay = 1.8e18f;  ///< component of a ray that Embree takes
+
+/// The guard. Embree 3.13.5 as Debian builds it aborts on NaN, Inf, components above kLargestRay and negative
+/// tNear; a zero or subnormal direction has no meaning. False = the ray is a miss. `largest`: less than
+/// kLargestRay where instances scale rays up.
+inline bool traceable(const Ray& r, float largest = kLargestRay) {
+  const auto in = [largest](float x) { return std::fabs(x) <= largest; };  // false for NaN
   const bool bounded = in(r.origin.x) & in(r.origin.y) & in(r.origin.z) & in(r.direction.x) &
                        in(r.direction.y) & in(r.direction.z);
   const auto counts = [](float x) { return std::fabs(x) >= std::numeric_limits<float>::min(); };
   const bool directed = counts(r.direction.x) | counts(r.direction.y) | counts(r.direction.z);
-  return bounded & directed & (r.tNear >= 0) & (r.tNear <= r.tFar) & (r.tNear <= kLargest);
+  return bounded & directed & (r.tNear >= 0) & (r.tNear <= r.tFar) & (r.tNear <= kLargestRay);
 }
 
 }  // namespace saccade::raytrace

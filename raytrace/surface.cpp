@@ -16,22 +16,21 @@ auto interpolate(const Array& v, float u, float b) {
 
 /// Attributes few meshes have are read from the scene's own arrays.
 template <class T>
-T interpolateMesh(const World& world, const Hit& hit, std::uint32_t object, const std::vector<T>& values) {
+T interpolateMesh(const World& world, const Hit& hit, const std::vector<T>& values) {
   const std::uint32_t* corner =
-      &world.meshOf(object).indices[3 * (hit.triangle - world.firstTriangle(object))];
+      &world.meshOf(hit.object).indices[3 * (hit.triangle - world.firstTriangle(hit.object))];
   return values[corner[0]] * (1 - hit.u - hit.v) + values[corner[1]] * hit.u + values[corner[2]] * hit.v;
 }
 
-Vec2 textureUv(const World& world, const Hit& hit, const TriangleRecord& record, const Vec2& uv0,
-               const TextureView& texture) {
+Vec2 textureUv(const World& world, const Hit& hit, const Vec2& uv0, const TextureView& texture) {
   if (texture.uvSet == 0) return uv0;
-  const core::Mesh& mesh = world.meshOf(record.object);
-  return mesh.uv1.empty() ? uv0 : interpolateMesh(world, hit, record.object, mesh.uv1);
+  const core::Mesh& mesh = world.meshOf(hit.object);
+  return mesh.uv1.empty() ? uv0 : interpolateMesh(world, hit, mesh.uv1);
 }
 
-void applyTextures(const World& world, const Hit& hit, const TriangleRecord& record, const Vec2& uv0,
-                   const CompiledMaterial& m, MaterialPoint& p) {
-  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, record, uv0, t)); };
+void applyTextures(const World& world, const Hit& hit, const Vec2& uv0, const CompiledMaterial& m,
+                   MaterialPoint& p) {
+  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, uv0, t)); };
   if (m.baseColorTexture) {
     const core::Vec4 t = texel(m.baseColorTexture);
     p.baseColor *= Vec3(t);
@@ -52,8 +51,8 @@ void applyTextures(const World& world, const Hit& hit, const TriangleRecord& rec
   if (m.transmissionTexture) p.transmission *= texel(m.transmissionTexture).x;
 }
 
-MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const TriangleRecord& record,
-                               const CompiledMaterial& m, const Vec2& uv0) {
+MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const CompiledMaterial& m,
+                               const Vec2& uv0) {
   MaterialPoint p;
   p.baseColor = m.baseColor;
   p.coverage = m.alpha;
@@ -65,9 +64,9 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
   p.transmission = m.transmission;
   p.ior = m.ior;
   p.diffuseFactor = m.diffuseFactor;
-  if (m.textured) applyTextures(world, hit, record, uv0, m, p);
+  if (m.textured) applyTextures(world, hit, uv0, m, p);
   if (world.hasColors(hit.object)) {
-    const core::Vec4 c = interpolateMesh(world, hit, record.object, world.meshOf(record.object).colors);
+    const core::Vec4 c = interpolateMesh(world, hit, world.meshOf(hit.object).colors);
     p.baseColor *= Vec3(c);
     p.coverage *= c.w;
   }
@@ -76,9 +75,12 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Triangl
 }
 
 /// Tangent (xyz, world) and handedness; 0 where the mesh has none.
-core::Vec4 tangentAt(const World& world, const Hit& hit, const TriangleRecord& record) {
-  const core::Mesh& mesh = world.meshOf(record.object);
-  return mesh.tangents.empty() ? core::Vec4(0) : interpolateMesh(world, hit, record.object, mesh.tangents);
+core::Vec4 tangentAt(const World& world, const Hit& hit) {
+  const core::Mesh& mesh = world.meshOf(hit.object);
+  if (mesh.tangents.empty()) return core::Vec4(0);
+  const core::Vec4 tangent = interpolateMesh(world, hit, mesh.tangents);
+  const Instance* place = world.instanceOf(hit.object);
+  return place ? place->tangent(tangent) : tangent;
 }
 
 /// Of the tangent plane under the front's normal.
@@ -109,14 +111,14 @@ Vec3 bendNormal(const Vec3& ng, Vec3 ns, const Vec3& toEye) {
 }
 
 /// The layers' parameters, with the coat's normal still on the triangle's front. `ns`: before its own map.
-ExtensionPoint extensionAt(const World& world, const Hit& hit, const TriangleRecord& record,
-                           const CompiledExtension& e, const Vec3& ns, const Vec2& uv0) {
-  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, record, uv0, t)); };
+ExtensionPoint extensionAt(const World& world, const Hit& hit, const CompiledExtension& e, const Vec3& ns,
+                           const Vec2& uv0) {
+  const auto texel = [&](const TextureView& t) { return t.sample(textureUv(world, hit, uv0, t)); };
   ExtensionPoint p = evaluateExtension(e, texel);
   p.coatNormal = ns;
   const bool directed = p.anisotropy > 0 || p.ward;
   if (!directed && !e.clearcoatNormalTexture) return p;
-  const core::Vec4 tangent = tangentAt(world, hit, record);
+  const core::Vec4 tangent = tangentAt(world, hit);
   if (directed) p.tangent = Vec3(tangent) * p.direction.x + bitangent(ns, tangent) * p.direction.y;
   if (e.clearcoatNormalTexture) {
     p.coatNormal = mappedNormal(texel(e.clearcoatNormalTexture), e.clearcoatNormalScale, tangent, ns);
@@ -143,16 +145,24 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
   s.position = interpolate(shape.position, hit.u, hit.v);
   s.uv0 = interpolate(record.uv0, hit.u, hit.v);
   s.lightmapUv = interpolate(record.lightmapUv, hit.u, hit.v);
-  s.point = evaluateMaterial(world, hit, record, *s.material, s.uv0);
+  Vec3 ns = interpolate(shape.normal, hit.u, hit.v);
+  const Instance* place = world.instanceOf(hit.object);
+  if (place) {
+    s.position = place->point(s.position);
+    s.offset = place->offset(s.offset);
+    s.lightmapUv = place->lightmapUv(s.lightmapUv);
+    ns = place->normalToWorld * ns;
+  }
+  s.point = evaluateMaterial(world, hit, *s.material, s.uv0);
 
   s.ng = unitOr(hit.ng, -direction);
-  s.ns = unitOr(interpolate(shape.normal, hit.u, hit.v), s.ng);
+  s.ns = unitOr(ns, s.ng);
   if (const CompiledExtension* e = s.material->extension.get()) {
-    s.point.extension = extensionAt(world, hit, record, *e, s.ns, s.uv0);
+    s.point.extension = extensionAt(world, hit, *e, s.ns, s.uv0);
   }
   if (const TextureView& map = s.material->normalTexture) {
-    s.ns = mappedNormal(map.sample(textureUv(world, hit, record, s.uv0, map)), s.material->normalScale,
-                        tangentAt(world, hit, record), s.ns);
+    s.ns = mappedNormal(map.sample(textureUv(world, hit, s.uv0, map)), s.material->normalScale,
+                        tangentAt(world, hit), s.ns);
   }
   s.front = glm::dot(s.ng, direction) <= 0;
   if (!s.front) {
@@ -167,14 +177,14 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
   return s;
 }
 
-Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, bool front) {
-  const TriangleShape& shape = world.shape(triangle);
+Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  bool front) {
   Hit hit;
   hit.triangle = triangle;
-  hit.object = world.record(triangle).object;
+  hit.object = object;
   hit.u = u;
   hit.v = v;
-  hit.ng = glm::cross(shape.position[1] - shape.position[0], shape.position[2] - shape.position[0]);
+  hit.ng = world.geometricNormal(object, triangle);
   const Vec3 n = unitOr(hit.ng, Vec3(0, 1, 0));
   return makeSurface(world, hit, front ? -n : n);
 }
@@ -183,9 +193,10 @@ Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v) {
   const TriangleRecord& record = world.record(triangle);
   Hit hit;
   hit.triangle = triangle;
+  hit.object = record.object;  // meshes that emit are never instanced
   hit.u = u;
   hit.v = v;
-  return textureUv(world, hit, record, interpolate(record.uv0, u, v),
+  return textureUv(world, hit, interpolate(record.uv0, u, v),
                    world.materialOf(record.object).emissionTexture);
 }
 
@@ -200,7 +211,7 @@ BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   const CompiledMaterial& m = world.materialOf(hit.object);
   const bool front = glm::dot(hit.ng, direction) <= 0;
   BaseLight light;
-  const MaterialPoint p = evaluateMaterial(world, hit, record, m, interpolate(record.uv0, hit.u, hit.v));
+  const MaterialPoint p = evaluateMaterial(world, hit, m, interpolate(record.uv0, hit.u, hit.v));
   light.coverage = p.coverage;
   if (!front && !m.scattersBehind()) return light;
   if (m.unlit) {
@@ -210,7 +221,8 @@ BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
   if (front || m.doubleSided) light.emitted = p.emission;
   const Vec3 albedo = baseAlbedo(p);
   if (albedo.x + albedo.y + albedo.z > 0) {
-    const Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
+    Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
+    if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
     light.reflected = albedo * (1 / core::kPi) * world.irradiance(uv, front ? 0 : 1);
   }
   return light;

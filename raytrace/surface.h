@@ -37,8 +37,10 @@ struct Surface {
 /// All of it. `direction` is the ray's, unit. Any thread.
 Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
 
-/// The barycentric point of a triangle, seen from its front (or back) along its normal: for map baking.
-Surface surfaceOn(const World& world, std::uint32_t triangle, float u, float v, bool front);
+/// The barycentric point of an object's triangle (World::record), seen from its front (or back) along its
+/// normal: for map baking.
+Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  bool front);
 
 /// Where the emission texture is read at a triangle's barycentric point.
 Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v);

@@ -1,7 +1,11 @@
 // The scene as rays see it: Embree's trees, packed per-triangle data, light tables, illumination maps.
 //
-// One Embree scene holds all triangles; each non-diffuse object has one more (same geometry, no copy), for
-// primary rays: the stencil says which object a pixel shows (design fact 9).
+// One Embree scene holds everything. A mesh of one object is in it as triangles in world space; an instanced
+// mesh has a tree of its own in mesh space, which Embree's instances (one level) place. For primary rays each
+// non-diffuse object can be met alone (the stencil says which object a pixel shows, design fact 9): through a
+// second tree over the same geometry, or through its mesh's tree with the ray taken to the mesh.
+// Triangles are stored once per mesh, so a triangle of an instanced mesh belongs to many objects: a hit names
+// both, and instanceOf() says how to bring what was read into the world.
 // Read-only once built: all const functions may be called from any thread at once.
 #pragma once
 
@@ -15,6 +19,7 @@
 #include "core/maps.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
+#include "raytrace/instance.h"
 #include "raytrace/material.h"
 #include "raytrace/ray.h"
 
@@ -26,8 +31,8 @@ class Lights;
 struct alignas(64) TriangleRecord {
   Vec2 lightmapUv[3] = {Vec2(0), Vec2(0), Vec2(0)};
   Vec2 uv0[3] = {Vec2(0), Vec2(0), Vec2(0)};
-  std::uint32_t object = 0;
-  float offset = 0;         ///< metres by which rays start off this triangle, along the geometric normal
+  std::uint32_t object = 0;  ///< the mesh's only one; of an instanced mesh any: ask Hit::object
+  float offset = 0;  ///< in mesh units, by which rays start off this triangle, along the geometric normal
   std::int32_t light = -1;  ///< index of the emissive triangle in Lights
 };
 
@@ -55,16 +60,24 @@ class PackedNormals {
   std::uint32_t words_[6] = {};
 };
 
-/// What a hit needs beyond that when rays leave it: one more cache line.
+/// What a hit needs beyond that when rays leave it: one more cache line. In the space of its mesh.
 struct alignas(64) TriangleShape {
   Vec3 position[3] = {Vec3(0), Vec3(0), Vec3(0)};
   PackedNormals normal;
+  std::uint32_t space = 0;  ///< 0 the world; else one number for each instanced mesh
+};
+
+/// An object that lies exactly on another.
+struct Twin {
+  std::uint32_t met = 0;     ///< the object that rays meet
+  std::uint32_t object = 0;  ///< the one they do not
 };
 
 class World {
  public:
   /// `scene` is charted (core::applyCharts) when maps are used; it must outlive the world. Builds on the
-  /// calling thread. Throws core::Error when Embree fails.
+  /// calling thread. Throws core::Error when Embree fails, and for an instanced mesh whose object emits or
+  /// whose transform cannot be inverted within the range of floats: completeScene leaves none.
   World(const core::Scene& scene, const core::Plan& plan);
   ~World();
   World(const World&) = delete;
@@ -82,6 +95,8 @@ class World {
   /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
   Vec3 irradiance(const Vec2& lightmapUv, int layer) const;
 
+  /// Of the ray guard: smaller than kLargestRay where instances scale rays up.
+  bool traceable(const Ray& ray) const { return raytrace::traceable(ray, largestRay_); }
   /// Nearest hit over all triangles; alpha-masked texels are not there.
   bool intersect(const Ray& ray, Hit& hit, RayCounters& counters) const;
   /// Nearest hit on one object, for primary rays; back faces of single-sided surfaces are not there.
@@ -99,8 +114,21 @@ class World {
   const TriangleShape& shape(std::uint32_t triangle) const { return shapes_[triangle]; }
   const CompiledMaterial& material(std::uint32_t index) const { return materials_[index]; }
   const CompiledMaterial& materialOf(std::uint32_t object) const { return materials_[materialOf_[object]]; }
-  std::size_t triangleCount() const { return records_.size(); }
+  std::size_t triangleCount() const { return records_.size(); }  ///< stored
   std::uint32_t firstTriangle(std::uint32_t object) const { return firstTriangle_[object]; }
+  std::uint32_t triangleCountOf(std::uint32_t object) const {
+    return static_cast<std::uint32_t>(meshOf(object).triangleCount());
+  }
+  /// Null for an object in world space.
+  const Instance* instanceOf(std::uint32_t object) const {
+    return flags_[object] & kInstanced ? &instances_[instanceOf_[object]] : nullptr;
+  }
+  /// Not unit; towards the front, in the world.
+  Vec3 geometricNormal(std::uint32_t object, std::uint32_t triangle) const;
+  /// Objects with the same instanced mesh in the same place as `object`, which rays meet in its stead.
+  std::span<const Twin> twinsOf(std::uint32_t object) const;
+  /// Bytes of everything built here, Embree's part as it counts it.
+  std::size_t bytes() const;
   /// Transmission, if any, is that of a solid: watertight, and not thin-walled by KHR_materials_volume.
   bool closed(std::uint32_t object) const { return flags_[object] & kClosed; }
   bool solid(std::uint32_t object) const { return closed(object) && materialOf(object).transmission > 0; }
@@ -114,12 +142,16 @@ class World {
   bool diffuse(std::uint32_t object) const { return flags_[object] & kDiffuse; }
 
  private:
+  friend class TreeBuilder;
   friend std::uint64_t replayRays(const World& world, const RayLog& log);
   struct Embree;
-  enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4 };
+  enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4, kInstanced = 8 };
   static constexpr int kMapTileX = 4, kMapTileY = 2;
   std::size_t mapIndex(int x, int y, int layer) const;
   void buildRecords();
+  void addRecords(std::uint32_t firstObject);
+  void placeObjects();
+  void findTwins();
   void buildTrees();
 
   const core::Scene& scene_;
@@ -130,8 +162,12 @@ class World {
   std::vector<std::uint32_t> materialOf_;  ///< by object
   HugeVector<TriangleRecord> records_;
   HugeVector<TriangleShape> shapes_;
-  std::vector<std::uint32_t> firstTriangle_;  ///< by object, one more at the end
-  std::vector<std::uint8_t> flags_;           ///< by object
+  std::vector<std::uint32_t> firstTriangle_;  ///< by object
+  std::vector<Instance> instances_;
+  std::vector<std::uint32_t> instanceOf_;  ///< by object, into instances_; empty without instances
+  std::vector<Twin> twins_;                ///< by the object that rays meet
+  float largestRay_ = kLargestRay;
+  std::vector<std::uint8_t> flags_;  ///< by object
   std::vector<std::uint32_t> objectOfId_;
   HugeVector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves, 4 x 2 to a cache line
   int mapTilesAcross_ = 0, mapTilesDown_ = 0;

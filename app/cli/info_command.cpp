@@ -30,6 +30,7 @@ Json describe(const core::Scene& scene, const core::Plan& plan) {
   json["objects"] = scene.objects.size();
   json["nondiffuse_objects"] = scene.idCount();
   json["triangles"] = scene.triangleCount();
+  json["stored_triangles"] = scene.storedTriangleCount();
   json["materials"] = scene.materials.size();
   json["textures"] = scene.textures.size();
   json["lights"] = lightCount(scene);
@@ -59,9 +60,9 @@ Json describe(const core::Scene& scene, const core::Plan& plan) {
 
 void print(const core::Scene& scene, const core::Plan& plan) {
   std::printf("%s\n", scene.path.c_str());
-  std::printf("  %zu objects (%u non-diffuse), %zu triangles, %zu materials, %zu textures\n",
-              scene.objects.size(), scene.idCount(), scene.triangleCount(), scene.materials.size(),
-              scene.textures.size());
+  std::printf("  %zu objects (%u non-diffuse), %zu triangles (%zu in memory), %zu materials, %zu textures\n",
+              scene.objects.size(), scene.idCount(), scene.triangleCount(), scene.storedTriangleCount(),
+              scene.materials.size(), scene.textures.size());
   std::printf(
       "  %zu lights%s\n", lightCount(scene),
       scene.defaultLight ? ", a default panel among them: the file has none that one would see by" : "");

@@ -1,12 +1,16 @@
 #include <algorithm>
+#include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/scene/clusters.h"
 #include "core/scene/defaults.h"
 #include "core/scene/hierarchy.h"
+#include "core/scene/instances.h"
 #include "core/scene/load.h"
 #include "core/scene/mesh_repair.h"
+#include "core/scene/placement.h"
 #include "core/scene/plan.h"
 
 namespace saccade::core {
@@ -17,8 +21,17 @@ const Material& materialOf(const Scene& scene, const Object& object) {
 }
 
 void repairAll(Scene& scene) {
+  // A shared mesh serves the first of its materials that needs tangents; the loaders let only those share
+  // that agree on them.
+  std::vector<const Material*> materialOfMesh(scene.meshes.size(), nullptr);
+  for (const Object& o : scene.objects) {
+    const Material& m = materialOf(scene, o);
+    const Material*& chosen = materialOfMesh[o.mesh];
+    if (!chosen || (m.needsTangents() && !chosen->needsTangents())) chosen = &m;
+  }
   RepairCounts counts;
-  for (Object& o : scene.objects) repairMesh(scene.meshOf(o), materialOf(scene, o), counts);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i)
+    if (materialOfMesh[i]) repairMesh(scene.meshes[i], *materialOfMesh[i], counts);
   std::erase_if(scene.objects, [&](const Object& o) { return scene.meshOf(o).indices.empty(); });
   const auto warn = [&](std::uint64_t n, const char* what) {
     if (n > 0) scene.warnings.push_back(std::to_string(n) + what);
@@ -34,18 +47,57 @@ bool nodeHasSeveral(const std::vector<Object>& objects, std::size_t at) {
   return (at > 0 && sameNode(at - 1)) || (at + 1 < objects.size() && sameNode(at + 1));
 }
 
+/// Splits meshes into clusters, a shared mesh once for all of its objects, or twice when some of them
+/// transmit and others do not.
+class MeshSplitter {
+ public:
+  explicit MeshSplitter(std::vector<Mesh>& meshes) : from_(meshes) {}
+
+  struct Split {
+    std::vector<Cluster> clusters;
+    std::vector<std::uint32_t> meshes;  ///< by cluster, into take()
+  };
+  const Split& split(std::uint32_t mesh, bool separateClosed) {
+    const auto [at, isNew] = splits_.try_emplace({mesh, separateClosed});
+    Split& out = at->second;
+    if (!isNew) return out;
+    out.clusters = clusterMesh(from_[mesh], separateClosed);
+    if (out.clusters.size() == 1) {
+      const auto [whole, first] = whole_.try_emplace(mesh, static_cast<std::uint32_t>(to_.size()));
+      if (first) to_.emplace_back();
+      out.meshes.push_back(whole->second);
+      return out;
+    }
+    for (const Cluster& c : out.clusters) {
+      out.meshes.push_back(static_cast<std::uint32_t>(to_.size()));
+      to_.push_back(subMesh(from_[mesh], c.triangles));
+    }
+    return out;
+  }
+  /// The new meshes; the old ones are used up.
+  std::vector<Mesh> take() {
+    for (const auto& [old, now] : whole_) to_[now] = std::move(from_[old]);
+    return std::move(to_);
+  }
+
+ private:
+  std::vector<Mesh>& from_;
+  std::vector<Mesh> to_;
+  std::map<std::pair<std::uint32_t, bool>, Split> splits_;
+  std::map<std::uint32_t, std::uint32_t> whole_;  ///< meshes of one cluster: old to new
+};
+
 /// Objects in order of (node, primitive), each replaced by its clusters.
 void splitIntoClusters(Scene& scene) {
   std::stable_sort(scene.objects.begin(), scene.objects.end(), [](const Object& a, const Object& b) {
     return std::tie(a.node, a.primitive) < std::tie(b.node, b.primitive);
   });
+  MeshSplitter splitter(scene.meshes);
   std::vector<Object> out;
-  std::vector<Mesh> meshes;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     Object& whole = scene.objects[i];
     if (nodeHasSeveral(scene.objects, i)) whole.name += "/" + std::to_string(whole.primitive);
-    const std::vector<Cluster> clusters =
-        clusterMesh(scene.meshOf(whole), materialOf(scene, whole).transmission > 0);
+    const auto& [clusters, meshes] = splitter.split(whole.mesh, materialOf(scene, whole).transmission > 0);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       Object part;
       part.name = clusters.size() > 1 ? whole.name + "#" + std::to_string(c) : whole.name;
@@ -54,14 +106,13 @@ void splitIntoClusters(Scene& scene) {
       part.cluster = static_cast<int>(c);
       part.material = whole.material;
       part.closed = clusters[c].closed;
-      part.mesh = static_cast<std::uint32_t>(meshes.size());
-      Mesh& mesh = scene.meshOf(whole);
-      meshes.push_back(clusters.size() > 1 ? subMesh(mesh, clusters[c].triangles) : std::move(mesh));
+      part.mesh = meshes[c];
+      part.meshToWorld = whole.meshToWorld;
       out.push_back(std::move(part));
     }
   }
   scene.objects = std::move(out);
-  scene.meshes = std::move(meshes);
+  scene.meshes = splitter.take();
 }
 
 void findBounds(Scene& scene) {
@@ -69,7 +120,12 @@ void findBounds(Scene& scene) {
   for (Object& o : scene.objects) {
     o.bounds = Bounds{};
     const Mesh& mesh = scene.meshOf(o);
-    for (const std::uint32_t i : mesh.indices) o.bounds.add(mesh.positions[i]);
+    if (mesh.instanced) {
+      const Placement place(o.meshToWorld);
+      for (const std::uint32_t i : mesh.indices) o.bounds.add(place.point(mesh.positions[i]));
+    } else {
+      for (const std::uint32_t i : mesh.indices) o.bounds.add(mesh.positions[i]);
+    }
     scene.bounds.add(o.bounds);
   }
 }
@@ -125,13 +181,14 @@ void checkObjects(Scene& scene) {
 
 }  // namespace
 
-void completeScene(Scene& scene, const LoadOptions& options, const LoadBudget* budget) {
+void completeScene(Scene& scene, const LoadOptions& options, LoadBudget* budget) {
   const auto lookAtClock = [&] {
     if (budget) budget->checkTime();
   };
   checkObjects(scene);
   scene.timeSeconds = options.timeSeconds;
   for (const std::string& light : options.lights) addLight(scene, light);
+  chooseInstances(scene, options.sharingPays, budget);
   repairAll(scene);
   lookAtClock();
   if (scene.objects.empty()) refuseEmpty(scene);

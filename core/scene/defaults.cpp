@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/scene/instances.h"
+#include "core/scene/placement.h"
 #include "core/scene/texture_mean.h"
 
 namespace saccade::core {
@@ -28,11 +30,34 @@ struct Hit {
   bool front;
 };
 
-/// visit(Hit) for whatever the ray meets, in no order. Every triangle is tried: a few dozen rays once per
-/// scene do not pay for a tree.
+/// Whether the ray can meet the box; says yes in doubt.
+bool mayMeet(const Bounds& box, const Vec3& from, const Vec3& direction) {
+  const Vec3 slack = 1e-4f * (glm::abs(box.lo) + glm::abs(box.hi) + glm::abs(from));
+  const Vec3 a = (box.lo - slack - from) / direction, b = (box.hi + slack - from) / direction;
+  float enter = 0, leave = kInfinity;
+  for (int c = 0; c < 3; ++c) {
+    // NaN (0 / 0: in the plane of a side) changes nothing.
+    enter = std::fmax(enter, std::fmin(a[c], b[c]));
+    leave = std::fmin(leave, std::fmax(a[c], b[c]));
+  }
+  return enter <= leave;
+}
+
+/// visit(Hit) for whatever the ray meets, in no order. Every triangle of the boxes met is tried: a few dozen
+/// rays once per scene do not pay for a tree.
 template <class Visit>
-void forEachHit(const Scene& scene, const Vec3& from, const Vec3& direction, Visit&& visit) {
+void forEachHit(const Scene& scene, const Vec3& worldFrom, const Vec3& worldDirection, Visit&& visit) {
   for (const Object& o : scene.objects) {
+    if (!mayMeet(o.bounds, worldFrom, worldDirection)) continue;
+    Vec3 from = worldFrom, direction = worldDirection;
+    bool mirrored = false;
+    if (scene.meshOf(o).instanced) {
+      const Placement place(o.meshToWorld);
+      const Mat3 inverse = glm::inverse(place.linear);
+      from = inverse * (from - place.translation);
+      direction = inverse * direction;
+      mirrored = place.mirrored;
+    }
     const auto& p = scene.meshOf(o).positions;
     const auto& index = scene.meshOf(o).indices;
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
@@ -47,7 +72,7 @@ void forEachHit(const Scene& scene, const Vec3& from, const Vec3& direction, Vis
       const float v = glm::dot(direction, q) / determinant;
       if (!(v >= 0 && u + v <= 1)) continue;
       const float t = glm::dot(e2, q) / determinant;
-      if (t > 0) visit(Hit{t, determinant > 0});
+      if (t > 0) visit(Hit{t, (determinant > 0) != mirrored});
     }
   }
 }
@@ -58,18 +83,6 @@ std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& 
     if (!nearest || hit.distance < nearest->distance) nearest = hit;
   });
   return nearest;
-}
-
-double surfaceArea(const Scene& scene, const Object& o) {
-  const Mesh& mesh = scene.meshOf(o);
-  double twice = 0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    Vec3 p[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = Vec3(o.meshToWorld * Vec4(mesh.positions[mesh.indices[i + k]], 1));
-    twice += glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
-  }
-  return 0.5 * twice;
 }
 
 struct FaceView {

@@ -1,20 +1,22 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <map>
 
 #include "core/scene/gltf_accessors.h"
 #include "core/scene/gltf_animation.h"
 #include "core/scene/gltf_gate.h"
 #include "core/scene/gltf_materials.h"
+#include "core/scene/instances.h"
 #include "core/scene/loaders.h"
+#include "core/scene/tangents.h"
 
 namespace saccade::core {
 namespace {
-
-constexpr std::size_t kMaxTriangles = 64u << 20;  ///< of a whole scene, instances counted one by one
 
 // ---- tinygltf behind the gate
 
@@ -154,26 +156,59 @@ void chargeMesh(const tinygltf::Model& model, const tinygltf::Primitive& primiti
   budget.charge(corners, 4 * sizeof(std::uint32_t), what);  // a strip has three corners for each of its own
 }
 
-/// In place. A mirroring transform turns the triangles over, so that their fronts stay outside.
-void toWorld(Mesh& mesh, const Mat4& localToWorld) {
-  const Mat3 linear(localToWorld);
-  const float determinant = glm::determinant(linear);
-  for (Vec3& p : mesh.positions) p = Vec3(localToWorld * Vec4(p, 1));
-  // Cofactors: the inverse transpose times the determinant, which also stands for singular matrices.
-  const Mat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                       glm::cross(linear[0], linear[1]));
-  const float side = determinant < 0 ? -1.0f : 1.0f;
-  for (Vec3& n : mesh.normals) n = glm::normalize(side * (cofactors * n));
-  for (Vec4& t : mesh.tangents) t = Vec4(glm::normalize(linear * Vec3(t)), side * t.w);
-  if (side > 0) return;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+/// Primitives with equal keys are one mesh, whatever glTF mesh and material they belong to.
+using MeshKey = std::vector<int>;
+
+/// All that localMesh reads, and the UV set along which tangents will be made: 0 also for those who need
+/// none.
+MeshKey keyOf(const tinygltf::Primitive& primitive, const Material& material) {
+  MeshKey key = {primitive.mode, primitive.indices};
+  for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"}) {
+    const auto at = primitive.attributes.find(name);
+    key.push_back(at == primitive.attributes.end() ? -1 : at->second);
+  }
+  const TextureSlot plain;
+  const bool made = material.needsTangents() && !primitive.attributes.contains("TANGENT");
+  const TextureSlot& slot = made ? tangentSlot(material) : plain;
+  key.push_back(slot.uvSet);
+  for (const float f : {slot.rotation, slot.scale.x, slot.scale.y}) key.push_back(std::bit_cast<int>(f));
+  return key;
 }
 
+/// The meshes of a file, each read once.
+class MeshReader {
+ public:
+  MeshReader(const tinygltf::Model& model, Scene& scene, LoadBudget& budget)
+      : model_(model), scene_(scene), budget_(budget) {}
+
+  /// Index into Scene::meshes. `what`: the element, for messages.
+  std::uint32_t read(const tinygltf::Primitive& primitive, const Material& material,
+                     const std::string& what) {
+    const auto [at, isNew] =
+        known_.try_emplace(keyOf(primitive, material), static_cast<std::uint32_t>(scene_.meshes.size()));
+    if (!isNew) return at->second;
+    chargeMesh(model_, primitive, what, budget_);
+    scene_.meshes.push_back(localMesh(model_, primitive));
+    scene_.meshes.back().instanced = true;
+    triangles_ += scene_.meshes.back().triangleCount();
+    if (triangles_ > kMaxStoredTriangles)
+      throw Error(scene_.path + ": more than " + std::to_string(kMaxStoredTriangles) + " triangles");
+    return at->second;
+  }
+
+ private:
+  const tinygltf::Model& model_;
+  Scene& scene_;
+  LoadBudget& budget_;
+  std::map<MeshKey, std::uint32_t> known_;
+  std::size_t triangles_ = 0;
+};
+
+/// Objects place their meshes by their nodes; completeScene decides which of them stay shared.
 void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, Scene& scene,
                    LoadBudget& budget) {
   int skipped = 0, positionless = 0;
-  std::size_t triangles = 0;
+  MeshReader reader(model, scene, budget);
   for (const int n : nodes) {
     const int meshIndex = model.nodes[static_cast<std::size_t>(n)].mesh;
     if (meshIndex < 0) continue;
@@ -189,19 +224,15 @@ void convertMeshes(const tinygltf::Model& model, const std::vector<int>& nodes, 
         continue;
       }
       Object object;
-      chargeMesh(model, primitive, "meshes[" + std::to_string(meshIndex) + "]", budget);
-      Mesh mesh = localMesh(model, primitive);
-      triangles += mesh.triangleCount();
-      if (triangles > kMaxTriangles)
-        throw Error(scene.path + ": more than " + std::to_string(kMaxTriangles) +
-                    " triangles with all instances");
-      toWorld(mesh, scene.nodes[static_cast<std::size_t>(n)].localToWorld);
+      object.meshToWorld = scene.nodes[static_cast<std::size_t>(n)].localToWorld;
       object.name = scene.nodes[static_cast<std::size_t>(n)].name;
       object.node = n;
       object.primitive = static_cast<int>(p);
       object.material =
           primitive.material >= 0 ? primitive.material : static_cast<int>(model.materials.size());
-      scene.add(std::move(object), std::move(mesh));
+      object.mesh = reader.read(primitive, scene.materials[static_cast<std::size_t>(object.material)],
+                                "meshes[" + std::to_string(meshIndex) + "]");
+      scene.objects.push_back(std::move(object));
     }
   }
   if (skipped > 0)

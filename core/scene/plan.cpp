@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/scene/instances.h"
 #include "core/scene/sheen.h"
 #include "core/scene/texture_mean.h"
 
@@ -31,16 +32,6 @@ std::string counted(std::size_t n, const char* thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-double areaOf(const Mesh& mesh) {
-  double twice = 0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const Vec3 a = mesh.positions[mesh.indices[i]];
-    twice += static_cast<double>(glm::length(
-        glm::cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a)));
-  }
-  return 0.5 * twice;
-}
-
 /// What the objects of a scene amount to.
 struct Census {
   std::size_t nonDiffuse = 0, rough = 0, transmitting = 0, alpha = 0, normalMapped = 0, doubleSided = 0,
@@ -66,7 +57,7 @@ Census count(const Scene& scene) {
   for (const Object& o : scene.objects) {
     const Material& m = scene.materials[static_cast<std::size_t>(o.material)];
     const MaterialMeans& mean = means[static_cast<std::size_t>(o.material)];
-    const double area = areaOf(scene.meshOf(o));
+    const double area = surfaceArea(scene, o);
     c.area += area;
     c.alpha += m.alphaMode != AlphaMode::opaque;
     c.emitting += m.emits();

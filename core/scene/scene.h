@@ -120,9 +120,8 @@ struct Mesh {
   std::vector<Vec3> normals;   ///< unit, always filled by the loader (flat ones where the file has none)
   std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when Material::needsTangents()
   std::vector<Vec2> uv0, uv1;
-  std::vector<Vec4> colors;  ///< COLOR_0, linear
-  std::vector<Vec2>
-      lightmapUv;  ///< into the illumination map atlas, [0, 1]^2; filled by applyCharts (core/maps.h)
+  std::vector<Vec4> colors;            ///< COLOR_0, linear
+  std::vector<Vec2> lightmapUv;        ///< for placeInAtlas; filled by applyCharts (core/maps.h)
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from the front
 
   std::size_t triangleCount() const { return indices.size() / 3; }
@@ -149,10 +148,14 @@ struct Object {
   /// Identity unless the mesh is instanced. A negative determinant turns triangles over: their front is then
   /// where they are seen clockwise.
   Mat4 meshToWorld{1};
-  /// Place in the illumination map atlas: uv = mesh uv * xy + zw.
-  Vec4 lightmapScaleOffset{1, 1, 0, 0};
-  Bounds bounds;  ///< world space
+  Vec4 lightmapScaleOffset{1, 1, 0, 0};  ///< see placeInAtlas
+  Bounds bounds;                         ///< world space
 };
+
+/// Where in the illumination map atlas a point of an object lies, [0, 1]^2, from Mesh::lightmapUv.
+inline Vec2 placeInAtlas(const Vec4& scaleOffset, const Vec2& lightmapUv) {
+  return lightmapUv * Vec2(scaleOffset) + Vec2(scaleOffset.z, scaleOffset.w);
+}
 
 /// Punctual light, KHR_lights_punctual; 1 cd = 1 W/sr, 1 lx = 1 W/m^2.
 struct PunctualLight {
@@ -218,6 +221,12 @@ struct Scene {
   std::size_t triangleCount() const {
     std::size_t n = 0;
     for (const Object& o : objects) n += meshOf(o).triangleCount();
+    return n;
+  }
+  /// Triangles in memory: those of an instanced mesh once.
+  std::size_t storedTriangleCount() const {
+    std::size_t n = 0;
+    for (const Mesh& m : meshes) n += m.triangleCount();
     return n;
   }
   /// Number of non-diffuse objects = largest id.

@@ -10,12 +10,6 @@
 namespace saccade::core {
 namespace {
 
-const TextureSlot& slotOf(const Material& m) {
-  for (const TextureSlot* slot : {&m.normalTexture, &m.clearcoatNormalTexture})
-    if (*slot) return *slot;
-  return m.anisotropyTexture;
-}
-
 std::vector<Vec2> uvOf(const Mesh& mesh, const TextureSlot& slot) {
   std::vector<Vec2> uv = slot.uvSet == 1 && !mesh.uv1.empty() ? mesh.uv1 : mesh.uv0;
   if (!slot.transformed()) return uv;
@@ -104,8 +98,14 @@ Vec3 anyPerpendicular(const Vec3& n) {
   return glm::normalize(glm::cross(n, std::abs(n.x) < 0.9f ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
 }
 
+const TextureSlot& tangentSlot(const Material& m) {
+  for (const TextureSlot* slot : {&m.normalTexture, &m.clearcoatNormalTexture})
+    if (*slot) return *slot;
+  return m.anisotropyTexture;
+}
+
 void makeTangents(Mesh& m, const Material& material) {
-  std::vector<Vec2> uv = uvOf(m, slotOf(material));
+  std::vector<Vec2> uv = uvOf(m, tangentSlot(material));
   if (!uv.empty()) splitMirrored(m, uv);
   std::vector<Frame> frames(m.positions.size());
   for (std::size_t first = 0; first + 2 < m.indices.size() && !uv.empty(); first += 3)

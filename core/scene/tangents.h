@@ -13,6 +13,9 @@ namespace saccade::core {
 /// coordinates: some direction in the surface. `mesh` has normals and sound triangles. Any thread.
 void makeTangents(Mesh& mesh, const Material& material);
 
+/// The texture whose coordinates makeTangents takes.
+const TextureSlot& tangentSlot(const Material& material);
+
 /// Some unit vector perpendicular to a unit vector.
 Vec3 anyPerpendicular(const Vec3& n);
 

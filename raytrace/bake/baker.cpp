@@ -87,7 +87,7 @@ std::vector<Vec3> bakeLayer(const World& world, const TexelMap& texels, const Pa
 
 std::uint64_t photonsOf(const std::string& quality) { return presetOf(quality).photons; }
 
-core::IlluminationMaps bakeMaps(const World& world, std::vector<core::ObjectCharts> charts, int atlasSize,
+core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, int atlasSize,
                                 const BakeOptions& options, const core::Progress& progress) {
   const Preset& preset = presetOf(options.quality);
   const TexelMap texels(world.scene(), atlasSize);

@@ -29,7 +29,7 @@ std::uint64_t photonsOf(const std::string& quality);
 /// and were applied to the world's scene (core::applyCharts); the charts are moved into the result. Layer 1
 /// exists when some material that shows irradiance is double-sided. Progress from any of the threads. Throws
 /// core::UsageError for an unknown quality, core::Error when stopped.
-core::IlluminationMaps bakeMaps(const World& world, std::vector<core::ObjectCharts> charts, int atlasSize,
+core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, int atlasSize,
                                 const BakeOptions& options, const core::Progress& progress);
 
 }  // namespace saccade::raytrace

@@ -5,6 +5,9 @@
 // the axis, so areas shrink by at most a quarter (a few triangles where charts meet lie within 52: by four
 // tenths). Charts are stretched to whole texels (a chart's rectangle side is rounded), so that straight walls
 // end at a texel's border and no texel is covered by a sliver only.
+//
+// An instanced mesh is cut once; its charts are packed into a block, and each object has such a block in the
+// atlas, larger by a power of two where the object is larger.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +20,11 @@
 namespace saccade::raytrace {
 
 struct ChartAtlas {
-  std::vector<core::ObjectCharts> charts;  ///< one per object; hand them to core::applyCharts
-  int size = 0;                            ///< atlas side in texels
-  float texelMetres = 0;                   ///< side of a texel on a surface parallel to its chart
+  core::SceneCharts charts;  ///< hand them to core::applyCharts
+  int size = 0;              ///< atlas side in texels
+  /// Side of a texel on a surface parallel to its chart. On instances within a factor of sqrt(2): their sizes
+  /// count as powers of two times that of the smallest with the same mesh.
+  float texelMetres = 0;
   std::size_t chartCount = 0;
 };
 
@@ -27,7 +32,7 @@ struct ChartAtlas {
 /// black and unlit materials have none; their objects share one texel.
 bool showsIrradiance(const core::Material& material);
 
-/// Charts for every object of a loaded, not yet charted scene; uniform texel density from the total surface
+/// Charts for every mesh of a loaded, not yet charted scene; uniform texel density from the total surface
 /// area, not finer than plan.texelSizeMetres, in an atlas of plan.lightmapSize (0: 1024) texels. Between
 /// charts lie two empty texels. The atlas doubles, up to maxAtlasSize, when its charts are so many that they
 /// would cost more than half of the density. Deterministic; about a microsecond per triangle and core. Throws

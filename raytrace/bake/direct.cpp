@@ -78,8 +78,9 @@ struct Receiver {
   LightChoice choice;
 
   Receiver(const World& world, const MeshPoint& at, bool front)
-      : surface(surfaceOn(world, world.firstTriangle(at.object) + at.triangle, at.b1, at.b2, front)),
-        normal(smoothNormal(world, surface.triangle, at.b1, at.b2, surface.ng)),
+      : surface(
+            surfaceOn(world, at.object, world.firstTriangle(at.object) + at.triangle, at.b1, at.b2, front)),
+        normal(smoothNormal(world, at.object, surface.triangle, at.b1, at.b2, surface.ng)),
         choice(world.lights().choose(surface.position)) {}
 
   /// Cosine against the interpolated normal; 0 below either horizon.

@@ -12,16 +12,18 @@ bool before(const Vec3& a, const Vec3& b) {
 
 /// A triangle's corners in the order of their positions.
 struct Key {
+  std::uint32_t space;
   std::array<Vec3, 3> position;
   std::array<std::uint8_t, 3> corner{0, 1, 2};
   std::uint32_t triangle;
 
-  Key(const TriangleShape& shape, std::uint32_t t) : triangle(t) {
+  Key(const TriangleShape& shape, std::uint32_t t) : space(shape.space), triangle(t) {
     std::sort(corner.begin(), corner.end(),
               [&](std::uint8_t a, std::uint8_t b) { return before(shape.position[a], shape.position[b]); });
     for (int k = 0; k < 3; ++k) position[k] = shape.position[corner[k]];
   }
   bool operator<(const Key& o) const {
+    if (space != o.space) return space < o.space;
     for (int k = 0; k < 3; ++k) {
       if (position[k] != o.position[k]) return before(position[k], o.position[k]);
     }
@@ -40,7 +42,7 @@ Duplicates::Duplicates(const World& world) {
   for (std::uint32_t t = 0; t < world.triangleCount(); ++t) keys.emplace_back(world.shape(t), t);
   std::sort(keys.begin(), keys.end());
   for (std::size_t first = 0, i = 1; i < keys.size(); ++i) {
-    if (keys[i].position != keys[first].position) {
+    if (keys[i].space != keys[first].space || keys[i].position != keys[first].position) {
       first = i;
       continue;
     }

@@ -10,7 +10,7 @@
 
 namespace saccade::raytrace {
 
-/// A triangle with the same three corners as an earlier one.
+/// A triangle with the same three corners as an earlier one of the same space (TriangleShape::space).
 struct Duplicate {
   std::uint32_t original = 0, triangle = 0;
   std::array<std::uint8_t, 3> corner{};  ///< corner k of the original is corner[k] of the duplicate

@@ -62,20 +62,38 @@ class Tracer {
   void deposit(const Surface& surface, const Hit& hit, const Vec3& direction, const Vec3& weight) {
     const float cosGeometric = -glm::dot(direction, surface.ng);
     const float cosShading =
-        -glm::dot(direction, smoothNormal(world_, hit.triangle, hit.u, hit.v, surface.ng));
+        -glm::dot(direction, smoothNormal(world_, hit.object, hit.triangle, hit.u, hit.v, surface.ng));
     const float ratio = std::clamp(cosShading / std::max(cosGeometric, 1e-6f), 0.0f, kMaxNormalRatio);
-    add(hit.triangle, surface.lightmapUv, surface.front, weight * ratio);
-    for (const Duplicate& d : duplicates_.of(hit.triangle)) {
-      const float b[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-      Vec2 uv(0);
-      for (int k = 0; k < 3; ++k) uv += world_.record(d.triangle).lightmapUv[d.corner[k]] * b[k];
-      add(d.triangle, uv, surface.front != d.flipped, weight * ratio);
+    add(hit.object, surface.lightmapUv, surface.front, weight * ratio);
+    addToDuplicates(hit.object, hit, surface.front, weight * ratio);
+    for (const Twin& twin : world_.twinsOf(hit.object)) {
+      const Vec2 uv = lightmapUvOf(hit, {0, 1, 2}, hit.triangle);
+      add(twin.object, world_.instanceOf(twin.object)->lightmapUv(uv), surface.front, weight * ratio);
+      addToDuplicates(twin.object, hit, surface.front, weight * ratio);
     }
   }
 
-  void add(std::uint32_t triangle, const Vec2& lightmapUv, bool front, const Vec3& weight) {
+  /// `object`: of the hit, or its twin.
+  void addToDuplicates(std::uint32_t object, const Hit& hit, bool front, const Vec3& weight) {
+    for (const Duplicate& d : duplicates_.of(hit.triangle)) {
+      Vec2 uv = lightmapUvOf(hit, d.corner, d.triangle);
+      const Instance* place = world_.instanceOf(object);
+      if (place) uv = place->lightmapUv(uv);
+      add(place ? object : world_.record(d.triangle).object, uv, front != d.flipped, weight);
+    }
+  }
+
+  /// In the charts of the mesh. Corner k of the triangle that was hit is corner[k] of `triangle`.
+  Vec2 lightmapUvOf(const Hit& hit, const std::array<std::uint8_t, 3>& corner, std::uint32_t triangle) const {
+    const float b[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+    Vec2 uv(0);
+    for (std::size_t k = 0; k < 3; ++k) uv += world_.record(triangle).lightmapUv[corner[k]] * b[k];
+    return uv;
+  }
+
+  void add(std::uint32_t objectIndex, const Vec2& lightmapUv, bool front, const Vec3& weight) {
     const core::Scene& scene = world_.scene();
-    const core::Object& object = scene.objects[world_.record(triangle).object];
+    const core::Object& object = scene.objects[objectIndex];
     if (!front && !scene.materials[static_cast<std::size_t>(object.material)].doubleSided) return;
     const std::size_t texel = texels_.texelAt(lightmapUv);
     if (texels_.chartOf(texel) >= 0) flux_.add(texel, front ? 0 : 1, weight);  // else shows no irradiance
@@ -146,15 +164,16 @@ double wattsPerWeight(const World& world, std::uint64_t emitted) {
   return emitted ? world.lights().totalPower() / static_cast<double>(emitted) : 0.0;
 }
 
-Vec3 smoothNormal(const World& world, std::uint32_t triangle, float u, float v, const Vec3& geometric) {
+Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  const Vec3& geometric) {
   const TriangleShape& shape = world.shape(triangle);
   Vec3 n = shape.normal[0] * (1 - u - v) + shape.normal[1] * u + shape.normal[2] * v;
   const float length = glm::length(n);
   if (!(length > 1e-6f)) return geometric;
-  n /= length;
+  const Instance* place = world.instanceOf(object);
+  n = place ? glm::normalize(place->normalToWorld * n) : n / length;
   // Front and back are the geometric normal's: a shading normal that leans over is bent to its side.
-  const Vec3 ngFront =
-      glm::cross(shape.position[1] - shape.position[0], shape.position[2] - shape.position[0]);
+  const Vec3 ngFront = world.geometricNormal(object, triangle);
   return glm::dot(ngFront, geometric) >= 0 ? n : -n;
 }
 

@@ -66,6 +66,7 @@ double wattsPerWeight(const World& world, std::uint64_t emitted);
 
 /// The interpolated vertex normal at a hit, on the side of the unit vector `geometric`: what irradiance is
 /// measured against (normal maps are left to shading).
-Vec3 smoothNormal(const World& world, std::uint32_t triangle, float u, float v, const Vec3& geometric);
+Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  const Vec3& geometric);
 
 }  // namespace saccade::raytrace

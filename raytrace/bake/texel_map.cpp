@@ -39,15 +39,19 @@ std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
   return out;
 }
 
-double worldArea(const core::Mesh& mesh, std::size_t t) {
+double worldArea(const core::Mesh& mesh, const glm::dmat3& meshToWorld, std::size_t t) {
   const glm::dvec3 a = mesh.positions[mesh.indices[3 * t]];
   const glm::dvec3 b = mesh.positions[mesh.indices[3 * t + 1]];
   const glm::dvec3 c = mesh.positions[mesh.indices[3 * t + 2]];
-  return 0.5 * glm::length(glm::cross(b - a, c - a));
+  return 0.5 * glm::length(glm::cross(meshToWorld * (b - a), meshToWorld * (c - a)));
 }
 
-Plane2 texelPosition(const core::Mesh& mesh, std::size_t corner, int size) {
-  return Plane2(mesh.lightmapUv[mesh.indices[corner]]) * static_cast<double>(size);
+/// In texels of the atlas, with the roundings of the tracer's look-ups.
+Plane2 texelPosition(const core::Scene& scene, std::size_t object, std::size_t corner, int size) {
+  const core::Object& o = scene.objects[object];
+  const core::Mesh& mesh = scene.meshOf(o);
+  return Plane2(core::placeInAtlas(o.lightmapScaleOffset, mesh.lightmapUv[mesh.indices[corner]])) *
+         static_cast<double>(size);
 }
 
 }  // namespace
@@ -60,7 +64,8 @@ TexelMap::TexelMap(const core::Scene& charted, int size) : scene_(charted), size
 }
 
 void TexelMap::findCharts() {
-  chartOfTriangle_.resize(scene_.objects.size());
+  chartOfTriangle_.resize(scene_.meshes.size());
+  firstChart_.assign(scene_.objects.size(), kNoCharts);
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
     const core::Object& object = scene_.objects[o];
     const core::Material& material = scene_.materials[static_cast<std::size_t>(object.material)];
@@ -70,14 +75,12 @@ void TexelMap::findCharts() {
       throw core::Error("illumination maps: object '" + object.name +
                         "' has no charts; call applyCharts first");
     }
-    chartOfTriangle_[o] = chartsOfMesh(mesh);
-    const auto base = static_cast<std::int32_t>(charts_.size());
-    for (std::int32_t& chart : chartOfTriangle_[o]) {
-      chart += base;
-      if (static_cast<std::size_t>(chart) >= charts_.size()) {
-        charts_.push_back({size_, size_, 0, 0, material.doubleSided});
-      }
-    }
+    std::vector<std::int32_t>& chartOf = chartOfTriangle_[object.mesh];
+    if (chartOf.empty()) chartOf = chartsOfMesh(mesh);
+    firstChart_[o] = static_cast<std::int32_t>(charts_.size());
+    const std::int32_t count = chartOf.empty() ? 0 : 1 + *std::max_element(chartOf.begin(), chartOf.end());
+    charts_.resize(charts_.size() + static_cast<std::size_t>(count),
+                   {size_, size_, 0, 0, material.doubleSided});
     anyDoubleSided_ |= material.doubleSided;
   }
 }
@@ -85,18 +88,21 @@ void TexelMap::findCharts() {
 std::vector<TexelMap::Placed> TexelMap::placeFragments() const {
   std::vector<Placed> placed;
   for (std::size_t o = 0; o < scene_.objects.size(); ++o) {
-    const core::Mesh& mesh = scene_.meshOf(scene_.objects[o]);
-    for (std::size_t t = 0; t < chartOfTriangle_[o].size(); ++t) {
-      const Plane2 a = texelPosition(mesh, 3 * t, size_), b = texelPosition(mesh, 3 * t + 1, size_),
-                   c = texelPosition(mesh, 3 * t + 2, size_);
+    if (firstChart_[o] == kNoCharts) continue;
+    const core::Object& object = scene_.objects[o];
+    const core::Mesh& mesh = scene_.meshOf(object);
+    const glm::dmat3 meshToWorld(object.meshToWorld);
+    for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+      const Plane2 a = texelPosition(scene_, o, 3 * t, size_), b = texelPosition(scene_, o, 3 * t + 1, size_),
+                   c = texelPosition(scene_, o, 3 * t + 2, size_);
       const double whole = 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-      const double perCell = whole > 0 ? worldArea(mesh, t) / whole : 0;
+      const double perCell = whole > 0 ? worldArea(mesh, meshToWorld, t) / whole : 0;
       if (!(perCell > 0) || !std::isfinite(perCell)) continue;
       forEachCell(a, b, c, size_, size_, [&](int x, int y, double cells) {
         const auto area = static_cast<float>(cells * perCell);
         if (!(area > 0)) return;
         placed.push_back({static_cast<std::uint32_t>(y * size_ + x),
-                          chartOfTriangle_[o][t],
+                          firstChart_[o] + chartOfTriangle_[object.mesh][t],
                           static_cast<float>(cells),
                           {static_cast<std::uint32_t>(o), static_cast<std::uint32_t>(t), area}});
       });
@@ -138,10 +144,10 @@ MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const 
     if (rest < f.area) break;
     rest -= f.area;
   }
-  const core::Mesh& mesh = scene_.meshOf(scene_.objects[part->object]);
   const std::size_t corner = std::size_t{3} * part->triangle;
-  const Plane2 a = texelPosition(mesh, corner, size_), b = texelPosition(mesh, corner + 1, size_),
-               c = texelPosition(mesh, corner + 2, size_);
+  const Plane2 a = texelPosition(scene_, part->object, corner, size_),
+               b = texelPosition(scene_, part->object, corner + 1, size_),
+               c = texelPosition(scene_, part->object, corner + 2, size_);
   const CellPolygon cell = clipToCell(a, b, c, static_cast<int>(texel % static_cast<std::size_t>(size_)),
                                       static_cast<int>(texel / static_cast<std::size_t>(size_)));
   // Choose a triangle of the polygon's fan by area, then a point in it.

@@ -12,8 +12,8 @@ namespace saccade::raytrace {
 
 /// The part of one triangle that lies in one texel.
 struct TexelFragment {
-  std::uint32_t object = 0, triangle = 0;
-  float area = 0;  ///< m^2 in the world
+  std::uint32_t object = 0, triangle = 0;  ///< triangle of the object's mesh
+  float area = 0;                          ///< m^2 in the world
 };
 
 /// A chart's own texels: [x0, x1) x [y0, y1), gutter not included.
@@ -67,7 +67,9 @@ class TexelMap {
   const core::Scene& scene_;
   int size_;
   bool anyDoubleSided_ = false;
-  std::vector<std::vector<std::int32_t>> chartOfTriangle_;  ///< by object
+  static constexpr std::int32_t kNoCharts = -1;
+  std::vector<std::vector<std::int32_t>> chartOfTriangle_;  ///< by mesh, from 0
+  std::vector<std::int32_t> firstChart_;                    ///< by object, added to these; or kNoCharts
   std::vector<ChartRect> charts_;
   std::vector<std::int32_t> chartOf_;
   std::vector<float> area_;

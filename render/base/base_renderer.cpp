@@ -22,7 +22,8 @@ namespace {
 
 struct Program {
   GlProgram program;
-  GLint viewProjection = -1;
+  GLint meshToClip = -1;
+  GLint lightmapPlace = -1;
   GLint surface = -1;
   std::array<GLint, kTextureUses.size()> uvMatrix{};
 };
@@ -32,7 +33,8 @@ Program makeProgram(const Gl& gl, Features features) {
   p.program = GlProgram(gl, buildProgram(gl, "base layer, features " + std::to_string(features),
                                          vertexShader(features), fragmentShader(features)));
   const GLuint name = p.program.name();
-  p.viewProjection = gl.GetUniformLocation(name, "viewProjection");
+  p.meshToClip = gl.GetUniformLocation(name, "meshToClip");
+  p.lightmapPlace = gl.GetUniformLocation(name, "lightmapPlace");
   p.surface = gl.GetUniformLocation(name, "surface");
   gl.UseProgram(name);
   // A uniform that the features leave out has location -1, which GL ignores.
@@ -82,6 +84,8 @@ struct BaseRenderer::State {
   std::uint32_t boundAttributes = 0;
   std::array<int, kUnitCount> boundTextures{};
   bool culling = false;
+  bool inWorldSpace = false;  ///< the program's uniforms are those of meshes in world space
+  bool mirrored = false;
 
   void uploadTextures();
   Features shown(Features features) const;
@@ -89,6 +93,7 @@ struct BaseRenderer::State {
   void draw(const core::View& view);
   void beginDraw(const core::View& view);
   void useState(const DrawItem& item, const core::View& view);
+  void placeMesh(const DrawItem& item, const core::View& view);
   void bindTexture(TextureUnit unit, const core::TextureSlot& slot);
   void cullBackFaces(bool cull);
   void sortVisible(const core::View& view);
@@ -146,6 +151,7 @@ void BaseRenderer::State::beginDraw(const core::View& view) {
   boundProgram = nullptr;
   boundAttributes = 0;
   culling = false;
+  mirrored = false;
   boundTextures.fill(-1);
   stats = {};
 }
@@ -166,8 +172,9 @@ void BaseRenderer::State::useState(const DrawItem& item, const core::View& view)
   if (&wanted != boundProgram) {
     boundProgram = &wanted;
     gl.UseProgram(wanted.program.name());
-    gl.UniformMatrix4fv(wanted.viewProjection, 1, GL_FALSE, &view.viewProjection()[0][0]);
+    inWorldSpace = false;
   }
+  placeMesh(item, view);
   if (item.attributes != boundAttributes) {
     boundAttributes = item.attributes;
     gl.BindVertexArray(geometry.vertexArray(item.attributes));
@@ -183,6 +190,21 @@ void BaseRenderer::State::useState(const DrawItem& item, const core::View& view)
   // Without maps the irradiance is pi, which the division by pi takes away.
   if (features & kLightmap) c.diffuse /= core::kPi;
   gl.Uniform4fv(wanted.surface, 3, &c.diffuse.x);
+}
+
+/// The position is one product for all programs: the same depth whatever the features.
+void BaseRenderer::State::placeMesh(const DrawItem& item, const core::View& view) {
+  if (item.mirrored != mirrored) {
+    mirrored = item.mirrored;
+    gl.FrontFace(mirrored ? GL_CCW : GL_CW);
+  }
+  if (!item.instanced && inWorldSpace) return;
+  inWorldSpace = !item.instanced;
+  const core::Object& object = scene.objects[item.object];
+  core::Mat4 meshToClip = view.viewProjection();
+  if (item.instanced) meshToClip = meshToClip * object.meshToWorld;
+  gl.UniformMatrix4fv(boundProgram->meshToClip, 1, GL_FALSE, &meshToClip[0][0]);
+  gl.Uniform4fv(boundProgram->lightmapPlace, 1, &object.lightmapScaleOffset.x);
 }
 
 /// Near objects first, so that what they hide is not shaded; objects around the camera (rooms) last. Ties

@@ -66,9 +66,10 @@ std::string header(Features features) {
 constexpr const char* kVertexBody = R"(
 layout(location = 0) in vec3 positionIn;
 invariant gl_Position;  // the same depth whatever the features
-uniform mat4 viewProjection;
+uniform mat4 meshToClip;
 #ifdef LIGHTMAP
 layout(location = 1) in vec2 lightmapUvIn;
+uniform vec4 lightmapPlace;  // core::placeInAtlas
 out vec2 lightmapUv;
 #endif
 #ifdef UV0
@@ -84,9 +85,9 @@ layout(location = 4) in vec4 colorIn;
 out vec4 color;
 #endif
 void main() {
-  gl_Position = viewProjection * vec4(positionIn, 1.0);
+  gl_Position = meshToClip * vec4(positionIn, 1.0);
 #ifdef LIGHTMAP
-  lightmapUv = lightmapUvIn;
+  lightmapUv = lightmapUvIn * lightmapPlace.xy + lightmapPlace.zw;
 #endif
 #ifdef UV0
   uv0 = uv0In;

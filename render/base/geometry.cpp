@@ -4,8 +4,10 @@
 #include <array>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "core/error.h"
+#include "core/scene/placement.h"
 #include "render/base/solid.h"
 
 namespace saccade::render {
@@ -48,10 +50,23 @@ void describeLayout(const Gl& gl, std::uint32_t attributes) {
   }
 }
 
-bool isSolid(const core::Scene& scene, const core::Object& object) {
-  const bool opaque = scene.materials[object.material].alphaMode == core::AlphaMode::opaque;
-  return opaque && object.closed && isOutwardSolid(scene.meshOf(object));
-}
+/// Asked once a mesh: the answer holds in any place, mirrored ones included.
+class Solids {
+ public:
+  explicit Solids(const core::Scene& scene) : scene_(scene), known_(scene.meshes.size(), kUnknown) {}
+  bool isSolid(const core::Object& object) {
+    const bool opaque = scene_.materials[object.material].alphaMode == core::AlphaMode::opaque;
+    if (!opaque || !object.closed) return false;
+    char& known = known_[object.mesh];
+    if (known == kUnknown) known = isOutwardSolid(scene_.meshOf(object));
+    return known == 1;
+  }
+
+ private:
+  static constexpr char kUnknown = 2;
+  const core::Scene& scene_;
+  std::vector<char> known_;
+};
 
 /// As the tracer has it: what refracts is seen from inside too.
 bool isOneSided(const core::Material& material) {
@@ -66,7 +81,7 @@ void fillBuffer(const Gl& gl, GLenum target, const std::vector<T>& data) {
 }  // namespace
 
 Geometry::Geometry(const Gl& gl, const core::Scene& scene) {
-  std::size_t indices = 0, vertices = 0;
+  Solids solids(scene);
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const core::Object& object = scene.objects[i];
     const core::Mesh& mesh = scene.meshOf(object);
@@ -76,16 +91,11 @@ Geometry::Geometry(const Gl& gl, const core::Scene& scene) {
     item.features = featuresOf(scene, object);
     item.attributes = attributesOf(item.features);
     item.indexCount = static_cast<std::uint32_t>(mesh.indices.size());
-    item.solid = isSolid(scene, object);
+    item.solid = solids.isSolid(object);
     item.oneSided = isOneSided(scene.materials[object.material]);
+    item.instanced = mesh.instanced;
+    item.mirrored = mesh.instanced && core::Placement(object.meshToWorld).mirrored;
     items_.push_back(item);
-    indices += mesh.indices.size();
-    vertices += mesh.positions.size();
-  }
-  constexpr std::size_t kLimit = std::numeric_limits<std::uint32_t>::max() / sizeof(std::uint32_t);
-  if (indices > kLimit || vertices > kLimit) {
-    throw core::Error("the scene has " + std::to_string(indices / 3) + " triangles; at most " +
-                      std::to_string(kLimit / 3) + " can be drawn");
   }
   sortItems(scene);
   upload(gl, scene);
@@ -106,11 +116,20 @@ void Geometry::sortItems(const core::Scene& scene) {
 void Geometry::upload(const Gl& gl, const core::Scene& scene) {
   std::map<std::uint32_t, std::vector<float>> vertices;
   std::vector<std::uint32_t> indices;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> firstIndices;  // of mesh and attributes
   for (DrawItem& item : items_) {
-    const core::Mesh& mesh = scene.meshOf(scene.objects[item.object]);
+    const core::Object& object = scene.objects[item.object];
+    const auto [known, isNew] =
+        firstIndices.try_emplace({object.mesh, item.attributes}, static_cast<std::uint32_t>(indices.size()));
+    item.firstIndex = known->second;
+    if (!isNew) continue;
+    const core::Mesh& mesh = scene.meshOf(object);
     std::vector<float>& out = vertices[item.attributes];
     const auto base = static_cast<std::uint32_t>(out.size() / strideFloats(item.attributes));
-    item.firstIndex = static_cast<std::uint32_t>(indices.size());
+    constexpr std::size_t kLimit = std::numeric_limits<std::uint32_t>::max() / sizeof(std::uint32_t);
+    if (indices.size() + mesh.indices.size() > kLimit || base + mesh.positions.size() > kLimit)
+      throw core::Error("the scene has too many triangles; at most " + std::to_string(kLimit / 3) +
+                        " can be drawn");
     appendVertices(out, mesh, item.attributes);
     for (std::uint32_t index : mesh.indices) indices.push_back(base + index);
   }

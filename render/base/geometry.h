@@ -11,19 +11,21 @@
 
 namespace saccade::render {
 
-/// One object's part of the index buffer.
+/// An object and its mesh's part of the index buffer.
 struct DrawItem {
   std::uint32_t object = 0;
   Features features = 0;         ///< with maps
   std::uint32_t attributes = 0;  ///< names the vertex layout
   std::uint32_t firstIndex = 0;
   std::uint32_t indexCount = 0;
-  bool solid = false;     ///< opaque, and its front faces hide its back faces from outside
-  bool oneSided = false;  ///< single-sided and opaque: its back faces are invisible to the camera
+  bool solid = false;      ///< opaque, and its front faces hide its back faces from outside
+  bool instanced = false;  ///< vertices are in the mesh's space: Object::meshToWorld
+  bool mirrored = false;   ///< and that turns triangles over
+  bool oneSided = false;   ///< single-sided and opaque: its back faces are invisible to the camera
 };
 
-/// All vertices interleaved, one vertex buffer per layout (the attributes that programs need), and one index
-/// buffer sorted like `items`.
+/// All meshes, an instanced one once for each layout that its objects need. Vertices interleaved, one vertex
+/// buffer per layout (the attributes that programs need), and one index buffer sorted like `items`.
 class Geometry {
  public:
   Geometry(const Gl& gl, const core::Scene& scene);

@@ -22,10 +22,11 @@ IlluminationMaps sample() {
   maps.height = 3;
   maps.layers = 2;
   for (int i = 0; i < 4 * 3 * 2 * 3; ++i) maps.texels.push_back(toHalf(0.25f * static_cast<float>(i)));
-  maps.charts.resize(2);
-  maps.charts[0].sourceVertex = {0, 1, 2, 2};
-  maps.charts[0].uv = {{0, 0}, {1, 0}, {0, 1}, {0.5f, 0.5f}};
-  maps.charts[0].indices = {0, 1, 2, 0, 1, 3};
+  maps.charts.meshes.resize(2);
+  maps.charts.places = {Vec4(1, 1, 0, 0), Vec4(4, 4, 0.5f, 0.25f), Vec4(0, 0, 0.1f, 0.2f)};
+  maps.charts.meshes[0].sourceVertex = {0, 1, 2, 2};
+  maps.charts.meshes[0].uv = {{0, 0}, {1, 0}, {0, 1}, {0.5f, 0.5f}};
+  maps.charts.meshes[0].indices = {0, 1, 2, 0, 1, 3};
   maps.quality = "preview";
   maps.photons = 12345678901ull;
   maps.key = 0xABCDEF0123456789ull;
@@ -62,10 +63,11 @@ TEST(Maps, RoundTrip) {
   EXPECT_EQ(back.quality, maps.quality);
   EXPECT_EQ(back.photons, maps.photons);
   EXPECT_EQ(back.key, maps.key);
-  ASSERT_EQ(back.charts.size(), 2u);
-  EXPECT_EQ(back.charts[0].sourceVertex, maps.charts[0].sourceVertex);
-  EXPECT_EQ(back.charts[0].uv, maps.charts[0].uv);
-  EXPECT_EQ(back.charts[0].indices, maps.charts[0].indices);
+  ASSERT_EQ(back.charts.meshes.size(), 2u);
+  EXPECT_EQ(back.charts.meshes[0].sourceVertex, maps.charts.meshes[0].sourceVertex);
+  EXPECT_EQ(back.charts.meshes[0].uv, maps.charts.meshes[0].uv);
+  EXPECT_EQ(back.charts.places, maps.charts.places);
+  EXPECT_EQ(back.charts.meshes[0].indices, maps.charts.meshes[0].indices);
   EXPECT_NO_THROW(readMaps(folder / "a.maps", 0));
 }
 
@@ -121,16 +123,17 @@ Scene room() {
   return scene;
 }
 
-std::vector<ObjectCharts> cornerCharts(const Scene& scene) {
-  std::vector<ObjectCharts> out;
+SceneCharts cornerCharts(const Scene& scene) {
+  SceneCharts out;
   for (const Object& o : scene.objects) {
-    ObjectCharts c;
+    MeshCharts c;
     for (std::uint32_t i = 0; i < scene.meshOf(o).indices.size(); ++i) {
       c.sourceVertex.push_back(scene.meshOf(o).indices[i]);
       c.uv.emplace_back(static_cast<float>(i) / 100, 0.5f);
       c.indices.push_back(i);
     }
-    out.push_back(c);
+    out.meshes.push_back(c);
+    out.places.emplace_back(1, 1, 0, 0);
   }
   return out;
 }
@@ -153,9 +156,12 @@ TEST(Maps, ChartsCutTheMeshWithoutChangingTheScene) {
 TEST(Maps, ChartsThatDoNotFitAreRefused) {
   Scene scene = room();
   auto charts = cornerCharts(scene);
-  charts[1].sourceVertex[0] = 9999;
+  charts.meshes[1].sourceVertex[0] = 9999;
   EXPECT_THROW(applyCharts(scene, charts), Error);
-  charts.pop_back();
+  charts.meshes.pop_back();
+  EXPECT_THROW(applyCharts(scene, charts), Error);
+  charts = cornerCharts(scene);
+  charts.places.pop_back();
   EXPECT_THROW(applyCharts(scene, charts), Error);
 }
 
@@ -171,6 +177,8 @@ TEST(SceneKey, DependsOnAllThatLightDoes) {
   differs([](Scene& s) { s.meshes[0].normals[3] = -s.meshes[0].normals[3]; });
   differs([](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); });
   differs([](Scene& s) { s.objects[0].material = 1; });
+  differs([](Scene& s) { s.objects[0].meshToWorld[3].x = 1; });
+  differs([](Scene& s) { s.objects[1].mesh = 0; });
   differs([](Scene& s) { s.materials[0].baseColor.y = 0.5f; });
   differs([](Scene& s) { s.materials[0].doubleSided = true; });
   differs([](Scene& s) { s.materials[1].emission *= 2; });

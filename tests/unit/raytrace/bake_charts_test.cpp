@@ -83,7 +83,7 @@ struct Area {
   double world = 0, atlas = 0;  // m^2, texels
 };
 
-Area areaOf(const core::Mesh& mesh, const core::ObjectCharts& charts, std::size_t t, int size) {
+Area areaOf(const core::Mesh& mesh, const core::MeshCharts& charts, std::size_t t, int size) {
   glm::dvec3 p[3];
   glm::dvec2 q[3];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -96,11 +96,12 @@ Area areaOf(const core::Mesh& mesh, const core::ObjectCharts& charts, std::size_
 
 /// All promises of makeCharts but determinism.
 void checkCharts(const core::Scene& scene, const ChartAtlas& atlas) {
-  ASSERT_EQ(atlas.charts.size(), scene.objects.size());
+  ASSERT_EQ(atlas.charts.meshes.size(), scene.meshes.size());
+  ASSERT_EQ(atlas.charts.places.size(), scene.objects.size());
   std::map<int, double> filled;  // texel -> covered share
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const core::Mesh& mesh = scene.meshOf(scene.objects[o]);
-    const core::ObjectCharts& charts = atlas.charts[o];
+    const core::MeshCharts& charts = atlas.charts.meshes[o];
     ASSERT_EQ(charts.indices.size(), mesh.indices.size());
     ASSERT_EQ(charts.uv.size(), charts.sourceVertex.size());
     for (const Vec2& uv : charts.uv) {
@@ -143,7 +144,7 @@ TEST(BakeCharts, CurvedSurfacesGetFewChartsAndFlatOnesKeepTheirShape) {
   const ChartAtlas wallAtlas = makeCharts(wall, planOf(256), 256);
   EXPECT_EQ(wallAtlas.chartCount, 1u);
   for (std::size_t t = 0; t < wall.meshes[0].triangleCount(); ++t) {
-    const Area a = areaOf(wall.meshes[0], wallAtlas.charts[0], t, wallAtlas.size);
+    const Area a = areaOf(wall.meshes[0], wallAtlas.charts.meshes[0], t, wallAtlas.size);
     EXPECT_NEAR(a.atlas * wallAtlas.texelMetres * wallAtlas.texelMetres / a.world, 1, 0.02);
   }
 }
@@ -152,7 +153,7 @@ TEST(BakeCharts, AreasShrinkByAtMostTheConeAndTheRoundingToTexels) {
   const core::Scene scene = sceneOf({sphere(48)});
   const ChartAtlas atlas = makeCharts(scene, planOf(512), 512);
   for (std::size_t t = 0; t < scene.meshes[0].triangleCount(); ++t) {
-    const Area a = areaOf(scene.meshes[0], atlas.charts[0], t, atlas.size);
+    const Area a = areaOf(scene.meshes[0], atlas.charts.meshes[0], t, atlas.size);
     if (a.world < 1e-7) continue;
     const double ratio = a.atlas * atlas.texelMetres * atlas.texelMetres / a.world;
     EXPECT_GT(ratio, 0.55);
@@ -191,8 +192,8 @@ TEST(BakeCharts, ObjectsThatShowNoIrradianceShareOneTexel) {
   scene.objects[0].material = 1;
   const ChartAtlas atlas = makeCharts(scene, planOf(64), 64);
   EXPECT_EQ(atlas.chartCount, 2u);
-  for (const Vec2& uv : atlas.charts[0].uv) EXPECT_EQ(uv, atlas.charts[0].uv[0]);
-  EXPECT_EQ(atlas.charts[0].indices, scene.meshes[0].indices);
+  for (const Vec2& uv : atlas.charts.meshes[0].uv) EXPECT_EQ(uv, atlas.charts.meshes[0].uv[0]);
+  EXPECT_EQ(atlas.charts.meshes[0].indices, scene.meshes[0].indices);
 }
 
 TEST(BakeCharts, DegenerateTrianglesSurvive) {
@@ -203,19 +204,19 @@ TEST(BakeCharts, DegenerateTrianglesSurvive) {
   for (std::uint32_t i : {0u, 0u, 0u, 0u, 1u, 0u, 0u, 1u, 2u, bad, 0u, 1u}) mesh.indices.push_back(i);
   const core::Scene scene = sceneOf({mesh, core::Mesh{}});
   const ChartAtlas atlas = makeCharts(scene, planOf(64), 64);
-  ASSERT_EQ(atlas.charts[0].indices.size(), mesh.indices.size());
-  for (const Vec2& uv : atlas.charts[0].uv) ASSERT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
-  EXPECT_TRUE(atlas.charts[1].indices.empty());
+  ASSERT_EQ(atlas.charts.meshes[0].indices.size(), mesh.indices.size());
+  for (const Vec2& uv : atlas.charts.meshes[0].uv) ASSERT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
+  EXPECT_TRUE(atlas.charts.meshes[1].indices.empty());
 }
 
 TEST(BakeCharts, TheSameSceneGivesTheSameCharts) {
   const core::Scene scene = sceneOf({sphere(20), spiralRamp(), manyPieces(100)});
   const ChartAtlas a = makeCharts(scene, planOf(256), 512), b = makeCharts(scene, planOf(256), 512);
   ASSERT_EQ(a.size, b.size);
-  for (std::size_t o = 0; o < a.charts.size(); ++o) {
-    EXPECT_EQ(a.charts[o].sourceVertex, b.charts[o].sourceVertex);
-    EXPECT_EQ(a.charts[o].indices, b.charts[o].indices);
-    EXPECT_EQ(a.charts[o].uv, b.charts[o].uv);
+  for (std::size_t o = 0; o < a.charts.meshes.size(); ++o) {
+    EXPECT_EQ(a.charts.meshes[o].sourceVertex, b.charts.meshes[o].sourceVertex);
+    EXPECT_EQ(a.charts.meshes[o].indices, b.charts.meshes[o].indices);
+    EXPECT_EQ(a.charts.meshes[o].uv, b.charts.meshes[o].uv);
   }
 }
 

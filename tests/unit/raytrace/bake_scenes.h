@@ -120,8 +120,12 @@ class Baked {
   }
 
   /// Irradiance of an object at its point nearest to `position`, on its triangles' planes.
-  core::Vec3 irradiance(int object, const core::Vec3& position, int layer = 0) const {
-    const core::Mesh& mesh = scene_.meshOf(scene_.objects[static_cast<std::size_t>(object)]);
+  core::Vec3 irradiance(int objectIndex, const core::Vec3& world, int layer = 0) const {
+    const core::Object& object = scene_.objects[static_cast<std::size_t>(objectIndex)];
+    const core::Mesh& mesh = scene_.meshOf(object);
+    const core::Vec3 position(glm::inverse(object.meshToWorld) * core::Vec4(world, 1));
+    core::Vec3 found(-1);
+    float nearest = core::kInfinity;
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
       const auto corner = [&](std::size_t c) { return mesh.indices[3 * t + c]; };
       const core::Vec3 a = mesh.positions[corner(0)], e = mesh.positions[corner(1)] - a,
@@ -130,11 +134,14 @@ class Baked {
       const float u = glm::dot(glm::cross(d, f), n) / glm::dot(n, n);
       const float v = glm::dot(glm::cross(e, d), n) / glm::dot(n, n);
       if (u < -1e-4f || v < -1e-4f || u + v > 1.0002f) continue;
-      return world_->irradiance(mesh.lightmapUv[corner(0)] * (1 - u - v) + mesh.lightmapUv[corner(1)] * u +
-                                    mesh.lightmapUv[corner(2)] * v,
-                                layer);
+      const float away = std::abs(glm::dot(d, glm::normalize(n)));
+      if (!(away < nearest)) continue;
+      nearest = away;
+      const core::Vec2 uv = mesh.lightmapUv[corner(0)] * (1 - u - v) + mesh.lightmapUv[corner(1)] * u +
+                            mesh.lightmapUv[corner(2)] * v;
+      found = world_->irradiance(core::placeInAtlas(object.lightmapScaleOffset, uv), layer);
     }
-    return core::Vec3(-1);
+    return found;
   }
 
   const World& world() const { return *world_; }

@@ -63,7 +63,7 @@ void expectNoSelfHit(const Vec3& center, float radius) {
   for (int i = 0; i < 20000; ++i) {
     const auto triangle = static_cast<std::uint32_t>(engine() % world.triangleCount());
     const float r = std::sqrt(u(engine)), v = u(engine) * r;
-    const Surface s = surfaceOn(world, triangle, 1 - r, v, true);
+    const Surface s = surfaceOn(world, world.record(triangle).object, triangle, 1 - r, v, true);
     Vec3 d = tests::randomDirection(engine);
     if (glm::dot(d, s.ng) < 0) d = -d;
     Hit hit;

@@ -1,10 +1,12 @@
 // The base layer against what its formula and geometry say.
 #include "render/base/base_renderer.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 #include <thread>
 
 #include "core/error.h"
+#include "core/scene/instances.h"
 #include "scene_fixture.h"
 
 namespace saccade::tests {
@@ -288,6 +290,58 @@ TEST_P(BaseLayer, CullingLeavesTheImageAlone) {
     EXPECT_EQ(all->depth, some->depth) << "turn " << turn;
   }
   EXPECT_GT(outside, 200u);
+}
+
+/// Boxes as instances of one mesh and light from the maps: turned, stretched, mirrored.
+Scene instancedBoxes() {
+  Scene scene;
+  scene.materials = {lambert(Vec3(1)), lambert(Vec3(0.2f, 0.9f, 0.4f))};
+  scene.materials[1].doubleSided = true;
+  Thing box = makeBox(Vec3(-0.5f), Vec3(0.5f));
+  box.mesh.instanced = true;
+  scene.meshes.push_back(box.mesh);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> place(-3, 3), size(-1.5f, 1.5f);
+  for (int i = 0; i < 60; ++i) {
+    core::Object o = box.object;
+    o.material = i % 2;
+    o.id = static_cast<std::uint32_t>(i + 1);
+    o.meshToWorld = glm::translate(core::Mat4(1), Vec3(place(random), place(random), place(random) - 5)) *
+                    glm::rotate(core::Mat4(1), static_cast<float>(i), Vec3(0.6f, 0, 0.8f)) *
+                    glm::scale(core::Mat4(1), Vec3(size(random), size(random), 0.7f));
+    o.lightmapScaleOffset = {0.25f, 0.5f, 0.25f * static_cast<float>(i % 4),
+                             0.5f * static_cast<float>(i % 2)};
+    o.bounds = {};
+    for (const Vec3& p : box.mesh.positions) o.bounds.add(Vec3(o.meshToWorld * core::Vec4(p, 1)));
+    scene.bounds.add(o.bounds);
+    scene.objects.push_back(o);
+  }
+  return scene;
+}
+
+TEST_P(BaseLayer, InstancesAreDrawnAsTheFlattenedSceneIs) {
+  const Scene scene = instancedBoxes();
+  Scene flat = scene;
+  core::chooseInstances(flat, ~std::size_t{0});
+  for (core::Object& o : flat.objects) {
+    for (core::Vec2& uv : flat.meshOf(o).lightmapUv) uv = core::placeInAtlas(o.lightmapScaleOffset, uv);
+    o.lightmapScaleOffset = {1, 1, 0, 0};
+  }
+  core::IlluminationMaps maps;
+  maps.width = 4;
+  maps.height = 2;
+  maps.layers = 2;
+  for (int i = 0; i < 4 * 2 * 2 * 3; ++i)
+    maps.texels.push_back(glm::packHalf1x16(1 + 0.25f * static_cast<float>(i)));
+  const auto a = draw(scene, &maps, 96, 96, {}), b = draw(flat, &maps, 96, 96, {});
+  EXPECT_GT(b->nonDiffusePixels, 3000);
+  int others = 0;
+  for (std::size_t i = 0; i < a->baseAndId.size(); ++i) {
+    const bool same = a->baseAndId[i].w == b->baseAndId[i].w && std::abs(a->depth[i] - b->depth[i]) < 1e-5f &&
+                      glm::length(Vec3(a->baseAndId[i]) - Vec3(b->baseAndId[i])) < 0.02f;
+    others += !same;  // an edge on this side of a pixel's centre or on that
+  }
+  EXPECT_LE(others, 10);
 }
 
 TEST_P(BaseLayer, SolidAroundTheCameraShowsItsInside) {
