@@ -102,8 +102,23 @@ std::vector<png_bytep> rowPointers(ImageRgba8& image) {
   return rows;
 }
 
+/// Every chunk must end within the file: libpng allocates and clears what a text chunk's length claims, up to
+/// 2 GiB, before it reads it.
+void checkChunks(std::span<const std::uint8_t> bytes, const std::string& name) {
+  constexpr std::size_t kSignature = 8, kLengthAndType = 8, kCrc = 4;
+  std::size_t at = kSignature;
+  while (bytes.size() - at >= kLengthAndType + kCrc) {
+    const std::uint32_t length = png_get_uint_32(&bytes[at]);
+    if (length > bytes.size() - at - kLengthAndType - kCrc)
+      throw Error(name + ": damaged PNG: the file ends within a chunk");
+    if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return;
+    at += kLengthAndType + length + kCrc;
+  }
+}
+
 /// Reads and checks the header; returns width and height.
 std::pair<int, int> openPng(PngState& state, std::span<const std::uint8_t> bytes, const std::string& name) {
+  checkChunks(bytes, name);
   state.in = bytes;
   if (!readHeader(state)) throw Error(name + ": damaged PNG: " + state.message);
   const std::int64_t width = png_get_image_width(state.png, state.info);

@@ -186,6 +186,13 @@ TEST(Png, BombsByDimensionAndEmptySidesAreRefused) {
   EXPECT_NE(messageOf(claiming(4, 0)).find("room/wall.png"), std::string::npos);
 }
 
+TEST(Png, AChunkBeyondTheFileIsRefusedBeforeItCosts) {
+  Bytes png = encodePng(randomImage(4, 4, true));
+  const Bytes text = {0x58, 0, 0, 0, 'z', 'T', 'X', 't'};  // 1.4 GiB; found by fuzzing
+  png.insert(png.begin() + 33, text.begin(), text.end());
+  EXPECT_EQ(messageOf(png), "room/wall.png: damaged PNG: the file ends within a chunk");
+}
+
 TEST(Jpeg, RoundTripIsClose) {
   const ImageRgba8 image = smoothImage(65, 47);
   const Bytes jpeg = encodeJpeg(image, 95);
