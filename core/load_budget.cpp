@@ -32,10 +32,11 @@ LoadBudget::LoadBudget(const LoadLimits& limits, std::string file)
 
 void LoadBudget::charge(std::uint64_t bytes, const std::string& what) {
   checkTime();
-  if (bytes > limits_.memoryBytes - used_)
-    throw Error(file_ + ": " + (what.empty() ? "" : what + ": ") + "needs " + mebibytes(bytes) +
-                " besides the " + mebibytes(used_) + " in use; --max-memory allows " +
-                mebibytes(limits_.memoryBytes) + " in all");
+  if (bytes > limits_.memoryBytes - used_) {
+    const std::string who = what.starts_with(file_) ? what : what.empty() ? file_ : file_ + ": " + what;
+    throw Error(who + ": needs " + mebibytes(bytes) + " besides the " + mebibytes(used_) +
+                " in use; --max-memory allows " + mebibytes(limits_.memoryBytes) + " in all");
+  }
   used_ += bytes;
 }
 

@@ -22,8 +22,8 @@ class LoadBudget {
   /// `file` starts the messages.
   LoadBudget(const LoadLimits& limits, std::string file);
 
-  /// Books `bytes` for `what`, an element of the file or "". Throws core::Error when they are not left, or
-  /// when the time is up.
+  /// Books `bytes` for `what`, an element of the file (its name may come first) or "". Throws core::Error
+  /// when they are not left, or when the time is up.
   void charge(std::uint64_t bytes, const std::string& what);
   /// `count` things of `bytesEach`; the product may not fit 64 bits.
   void charge(std::uint64_t count, std::uint64_t bytesEach, const std::string& what);

@@ -45,6 +45,8 @@ TEST(LoadBudget, ChargesUpToTheLimitAndNoFurther) {
   budget.release(kMebi);
   EXPECT_EQ(messageOf([&] { budget.charge(kMebi + 1, "images[1]"); }),
             "room.glb: images[1]: needs 2 MiB besides the 9 MiB in use; --max-memory allows 10 MiB in all");
+  EXPECT_EQ(messageOf([&] { budget.charge(2 * kMebi, "room.glb: images[1]"); }),
+            "room.glb: images[1]: needs 2 MiB besides the 9 MiB in use; --max-memory allows 10 MiB in all");
   budget.charge(kMebi, "images[1]");
   EXPECT_EQ(budget.used(), 10 * kMebi);
 }
