@@ -1,5 +1,7 @@
 #include "app/session/lightmap_import.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -134,14 +136,14 @@ raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene&
       throw core::Error(folder.string() + ": '" + shown + "' and '" + files[1].filename().string() +
                         "' are for the same node; keep one of them");
     if (!takers.unable.empty())
-      report.warnings.push_back("node '" + name + "' has parts without a second UV set; '" + shown +
-                                "' does not light them, they are baked");
+      report.warnings.push_back(
+          fmt::format("node '{}' has parts without a second UV set; '{}' does not light them, they are baked",
+                      name, shown));
     if (takers.able.empty()) continue;
     out.images.push_back(readIrradiance(files[0], scale, budget));
     for (const std::size_t o : takers.able) out.imageOfObject[o] = static_cast<int>(out.images.size()) - 1;
-    report.taken.push_back(shown + " (" + std::to_string(out.images.back().width()) + "x" +
-                           std::to_string(out.images.back().height()) + "): node '" + name + "', " +
-                           std::to_string(takers.able.size()) + " objects");
+    report.taken.push_back(fmt::format("{} ({}x{}): node '{}', {} objects", shown, out.images.back().width(),
+                                       out.images.back().height(), name, takers.able.size()));
   }
   if (strangers > kStrangersNamed)
     report.warnings.push_back("and " + std::to_string(strangers - kStrangersNamed) +

@@ -117,10 +117,12 @@ Figures ours(const Subject& s) {
 /// Medians, figure by figure.
 Figures medianOf(int repeats, const std::function<Figures()>& work) {
   std::vector<Figures> runs;
+  runs.reserve(static_cast<std::size_t>(repeats));
   for (int i = 0; i < repeats; ++i) runs.push_back(inChild(work));
   Figures out{};
   for (std::size_t figure = 0; figure < Figure::count; ++figure) {
     std::vector<double> values;
+    values.reserve(runs.size());
     for (const Figures& run : runs) values.push_back(run[figure]);
     out[figure] = spread(values).median;
   }
