@@ -17,6 +17,8 @@ using Rgbe = std::array<std::uint8_t, 4>;
 constexpr int kShortestNew = 8, kLongestNew = 0x7fff;
 constexpr int kNewRun = 128;  ///< a count above this is a run of count - 128
 /// The fewest bytes that hold so many pixels: a run of the new kind covers 127 of one component.
+/// A black picture of 16384 pixels a scanline in the old encoding has 1365; the format would allow billions.
+constexpr std::int64_t kMaxPixelsPerByte = 4096;
 constexpr std::int64_t kPixelsPerRun = 127, kBytesPerRun = 4 * 2;
 /// Old encoding: repeat counts of consecutive markers are digits of this many bits. More than fit a scanline
 /// are refused, so four digits do.
@@ -103,7 +105,8 @@ Header parseHeader(Reader& in, const std::string& name) {
   const std::int64_t runs = header.fast / kPixelsPerRun;
   const std::int64_t leastNew = 4 + std::max<std::int64_t>(runs, 1) * kBytesPerRun, leastOld = 4;
   const bool canBeNew = in.startsNewScanline(header.fast);
-  if (in.left() / header.slow < (canBeNew ? leastNew : leastOld))
+  if (in.left() / header.slow < (canBeNew ? leastNew : leastOld) ||
+      header.fast * header.slow > kMaxPixelsPerByte * in.left())
     in.refuse("is cut off: its bytes cannot hold " + std::to_string(header.fast) + " x " +
               std::to_string(header.slow) + " pixels");
   return header;

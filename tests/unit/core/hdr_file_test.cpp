@@ -194,6 +194,12 @@ TEST(Hdr, PixelsAreChargedBeforeTheyAreAllocated) {
   }
 }
 
+TEST(Hdr, AFewBytesDoNotClaimGigabytes) {
+  Bytes file = header("+X 4 -Y 55555555");  // found by fuzzing
+  for (int i = 0; i < 4; ++i) append(file, {5, 5, 5, 128});
+  EXPECT_NE(messageOf(file).find("cannot hold"), std::string::npos) << messageOf(file);
+}
+
 TEST(Hdr, NoBytesMakeItCrash) {
   std::mt19937 random(5);
   Bytes whole = header("-Y 6 +X 40");
