@@ -16,9 +16,9 @@ using Rgbe = std::array<std::uint8_t, 4>;
 // New run-length encoding: only for scanlines of these lengths; each of the four components by itself.
 constexpr int kShortestNew = 8, kLongestNew = 0x7fff;
 constexpr int kNewRun = 128;  ///< a count above this is a run of count - 128
-/// The fewest bytes that hold so many pixels: a run of the new kind covers 127 of one component.
 /// A black picture of 16384 pixels a scanline in the old encoding has 1365; the format would allow billions.
 constexpr std::int64_t kMaxPixelsPerByte = 4096;
+/// The fewest bytes that hold so many pixels: a run of the new kind covers 127 of one component.
 constexpr std::int64_t kPixelsPerRun = 127, kBytesPerRun = 4 * 2;
 /// Old encoding: repeat counts of consecutive markers are digits of this many bits. More than fit a scanline
 /// are refused, so four digits do.

@@ -38,19 +38,20 @@ GltfParts splitGlb(Bytes whole, const std::string& file, Repairs& repairs) {
   GltfParts parts;
   parts.binary = true;
   std::size_t at = kHeader;
-  for (int chunk = 0; at < bytes.size(); ++chunk) {
-    const std::string where = "chunk " + std::to_string(chunk);
-    if (bytes.size() - at < kChunkHeader) throw Error(file + ": GLB " + where + " is cut off in its header");
+  int chunk = 0;
+  const auto where = [&] { return file + ": GLB chunk " + std::to_string(chunk); };
+  for (; at < bytes.size(); ++chunk) {
+    if (bytes.size() - at < kChunkHeader) throw Error(where() + " is cut off in its header");
     const std::uint32_t size = word(bytes, at), type = word(bytes, at + 4);
     at += kChunkHeader;
-    if (size > bytes.size() - at) throw Error(file + ": GLB " + where + " reaches beyond the file");
+    if (size > bytes.size() - at) throw Error(where() + " reaches beyond the file");
     if ((chunk == 0) != (type == kJsonChunk))
-      throw Error(file + ": GLB must have one JSON chunk, its first; " + where + " is wrong");
-    if (size % 4 != 0) repairs.add("GLB chunks are not padded to 4 bytes", file + ": " + where);
+      throw Error(where() + " is wrong: there must be one JSON chunk, the first");
+    if (size % 4 != 0) repairs.add("GLB chunks are not padded to 4 bytes", where());
     if (chunk == 0) parts.json = bytes.subspan(at, size);
     if (chunk == 1 && type == kBinChunk) parts.bin = bytes.subspan(at, size);
     if (chunk > 1 && type == kBinChunk)
-      repairs.add("GLB chunks of binary data but the first were ignored", file + ": " + where);
+      repairs.add("GLB chunks of binary data but the first were ignored", where());
     at += size;
   }
   return parts;

@@ -103,6 +103,7 @@ std::vector<std::size_t> checkAnimation(const Element& animation, const Json& no
                                         LoadBudget& budget) {
   const auto samplers = animation.array("samplers"), channels = animation.array("channels");
   std::vector<const char*> faults;
+  faults.reserve(samplers.size());
   for (const Element& of : samplers) faults.push_back(inputFault(samplerOf(of, accessors), budget));
   std::vector<std::size_t> kept;
   std::set<std::pair<std::size_t, std::string>> targets;

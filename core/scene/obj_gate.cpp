@@ -154,9 +154,9 @@ class ObjGate {
   /// v, v/t, v//n or v/t/n, rewritten at the end of out_; false when the vertex is not there.
   bool corner(Text word) {
     std::array<Text, 3> parts;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
+    for (Text& part : parts) {
       const std::size_t slash = std::min(word.find('/'), word.size());
-      parts[k] = word.substr(0, slash);
+      part = word.substr(0, slash);
       word.remove_prefix(std::min(word.size(), slash + 1));
     }
     const std::uint64_t vertex = resolve(parts[0], 0);

@@ -100,7 +100,7 @@ TEST(BadGltf, Containers) {
   EXPECT_PART(with(4, "\1"), "GLB version 1, must be 2");
   EXPECT_PART(with(8, "\xff\xff\xff\x7f"), "GLB states");
   EXPECT_PART(with(12, "\xff\xff\xff\xff"), "GLB chunk 0 reaches beyond the file");
-  EXPECT_PART(with(16, "NOSJ"), "its first; chunk 0 is wrong");
+  EXPECT_PART(with(16, "NOSJ"), "GLB chunk 0 is wrong: there must be one JSON chunk, the first");
   EXPECT_TRUE(loadText("a.glb", whole + "more").warns("bytes behind the end of the GLB"));
 }
 
