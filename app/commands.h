@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -17,8 +18,9 @@ void addRenderCommand(CLI::App& program, Run& run);
 void addWalkCommand(CLI::App& program, Run& run);
 void addCompareCommand(CLI::App& program, Run& run);
 
-/// Parses and runs; prints errors as the command line promises. Returns the exit status: 0, 1 failed, 2 wrong
-/// usage.
-int runProgram(int argc, const char* const* argv);
+/// Parses and runs; `further` are commands of rooms above this one. Prints errors as the command line
+/// promises. Returns the exit status: 0, 1 failed, 2 wrong usage.
+using AddCommand = void (*)(CLI::App& program, Run& run);
+int runProgram(int argc, const char* const* argv, const std::vector<AddCommand>& further);
 
 }  // namespace saccade::app

@@ -1,3 +1,6 @@
 #include "app/commands.h"
+#include "bench/bench_command.h"
 
-int main(int argc, char** argv) { return saccade::app::runProgram(argc, argv); }
+int main(int argc, char** argv) {
+  return saccade::app::runProgram(argc, argv, {saccade::bench::addBenchCommand});
+}

@@ -51,16 +51,9 @@ void print(const core::Comparison& c) {
               c.flipP95);
 }
 
-void writeMap(const std::string& file, const core::ImageGray& flip) {
-  core::ImageRgba8 picture(flip.width(), flip.height());
-  for (std::size_t i = 0; i < flip.pixels().size(); ++i)
-    picture.pixels()[i] = core::rampColor(flip.pixels()[i]);
-  core::writePng(file, picture);
-}
-
 int compare(const CompareOptions& o) {
   const core::Comparison c = comparePictures(o);
-  if (!o.map.empty()) writeMap(o.map, c.flipMap);
+  if (!o.map.empty()) core::writePng(o.map, core::rampPicture(c.flipMap));
   if (o.json) {
     printJson(c);
   } else {

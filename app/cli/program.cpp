@@ -18,7 +18,7 @@ int usageError(const std::string& text, const std::string& hint) {
 
 }  // namespace
 
-int runProgram(int argc, const char* const* argv) {
+int runProgram(int argc, const char* const* argv, const std::vector<AddCommand>& further) {
   setupLog();
   CLI::App program("Saccade: walk through scenes with global illumination, ray-traced where you look",
                    "saccade");
@@ -30,6 +30,7 @@ int runProgram(int argc, const char* const* argv) {
   addRenderCommand(program, run);
   addWalkCommand(program, run);
   addCompareCommand(program, run);
+  for (const AddCommand add : further) add(program, run);
   try {
     program.parse(argc, argv);
     return run();

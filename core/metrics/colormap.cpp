@@ -39,6 +39,12 @@ Rgba8 rampColor(float value) {
   return {toByte(color.x), toByte(color.y), toByte(color.z), 255};
 }
 
+ImageRgba8 rampPicture(const ImageGray& map) {
+  ImageRgba8 picture(map.width(), map.height());
+  for (std::size_t i = 0; i < map.pixels().size(); ++i) picture.pixels()[i] = rampColor(map.pixels()[i]);
+  return picture;
+}
+
 Rgba8 paletteColor(std::uint32_t id) {
   if (id == 0) return {0, 0, 0, 255};
   // Hue steps by the golden ratio, which keeps any run of neighbours apart; brightness and saturation step by
