@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
 
 #include "core/atomic_file.h"
+#include "core/cache_folder.h"
 #include "core/content_hash.h"
 #include "core/math/half.h"
 #include "core/scene/mesh_repair.h"
@@ -293,23 +293,10 @@ std::uint64_t sceneKey(const Scene& scene) {
 }
 
 std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings) {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  std::filesystem::path folder;
-  if (cache != nullptr && *cache == '/') {
-    folder = cache;
-  } else if (home != nullptr && *home != '\0') {
-    folder = std::filesystem::path(home) / ".cache";
-  } else {
-    throw Error("no place to keep illumination maps: set XDG_CACHE_HOME or HOME, or name a file with --maps");
-  }
   ContentHash hash;
   hash.add(key);
   hash.add(settings);
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string name;
-  for (int shift = 60; shift >= 0; shift -= 4) name += kDigits[hash.value() >> shift & 15];
-  return folder / "saccade" / (name + ".maps");
+  return cacheFolder() / (cacheName(hash.value()) + ".maps");
 }
 
 IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key) {

@@ -228,7 +228,7 @@ PathResult tracePaths(const World& world, const core::View& view, const PathOpti
       Moments moments;
       for (int i = 0; i < n; ++i) {
         core::PixelSampler sampler(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                   static_cast<std::uint64_t>(i), options.seed);
+                                   options.firstSample + static_cast<std::uint64_t>(i), options.seed);
         const Vec2 jitter = sampler.next2D();
         const Vec2 pixel(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
         const Ray ray{view.camera().eye, glm::normalize(view.direction(pixel)), 0, core::kInfinity};
@@ -247,7 +247,7 @@ Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options
   Moments moments;
   const int n = std::max(1, options.samplesPerPixel);
   for (int i = 0; i < n; ++i) {
-    core::PixelSampler sampler(0, 0, static_cast<std::uint64_t>(i), options.seed);
+    core::PixelSampler sampler(0, 0, options.firstSample + static_cast<std::uint64_t>(i), options.seed);
     addPath(world, ray, options, sampler, counters, moments);
   }
   return moments.mean(n);

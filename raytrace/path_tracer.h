@@ -17,8 +17,15 @@ enum class Transport {
   diffuse  ///< what base layer and maps claim: emission and Lambert with the base layer's diffuse factor
 };
 
+/// Part of the keys under which path-traced references are kept: raise it whenever the radiance of any path
+/// changes.
+inline constexpr int kPathTracerVersion = 1;
+
 struct PathOptions {
   int samplesPerPixel = 64;
+  /// Index of a pixel's first sample. Passes whose samples follow on one another add up to the picture of one
+  /// pass with all of them.
+  std::uint64_t firstSample = 0;
   int bounces = 12;  ///< scattering events; 0 = emission only, 1 = direct light
   Transport transport = Transport::all;
   DiffuseModel diffuse = DiffuseModel::lambert;  ///< with Transport::all

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/error.h"
 #include "core/image_io.h"
 #include "core/metrics/separable.h"
 
@@ -215,6 +216,17 @@ double meanOf(const ImageGray& map) {
   if (map.empty()) return 0;
   return std::accumulate(map.pixels().begin(), map.pixels().end(), 0.0) /
          static_cast<double>(map.pixels().size());
+}
+
+double weightedMeanOf(const ImageGray& map, const ImageGray& weights) {
+  if (map.width() != weights.width() || map.height() != weights.height())
+    throw Error("an error map and its weights differ in size: give both the reference's");
+  double sum = 0, total = 0;
+  for (std::size_t i = 0; i < map.pixels().size(); ++i) {
+    sum += static_cast<double>(weights.pixels()[i]) * map.pixels()[i];
+    total += weights.pixels()[i];
+  }
+  return total > 0 ? sum / total : meanOf(map);
 }
 
 double weightedPercentile(const ImageGray& map, double fraction) {

@@ -17,6 +17,11 @@ ImageGray flip(const ImageRgba8& reference, const ImageRgba8& test,
 /// 0 for an empty map.
 double meanOf(const ImageGray& map);
 
+/// Mean of the map's pixels, each counted as often as its weight says: saliency-weighted FLIP with a saliency
+/// map as weights. Weights are at least 0; where all are 0 (nothing stands out) it is the plain mean. Throws
+/// core::Error where the sizes differ.
+double weightedMeanOf(const ImageGray& map, const ImageGray& weights);
+
 /// The value below which `fraction` of the map's total error lies, so that large areas without error do not
 /// hide the errors (as in the tool that the paper's authors publish). `fraction` in [0, 1].
 double weightedPercentile(const ImageGray& map, double fraction);

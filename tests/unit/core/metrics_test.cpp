@@ -164,6 +164,17 @@ TEST(Flip, WeightedPercentileCountsErrorNotPixels) {
   EXPECT_NEAR(meanOf(map), 0.06, 1e-7);
 }
 
+TEST(Flip, WeightedMeanCountsPixelsByTheirWeights) {
+  ImageGray map(2, 2), weights(2, 2);
+  map.pixels() = {0.5f, 0.25f, 1, 0};
+  weights.pixels() = {1, 0.5f, 0, 0.5f};
+  EXPECT_DOUBLE_EQ(weightedMeanOf(map, weights), (0.5 + 0.125) / 2);
+  EXPECT_DOUBLE_EQ(weightedMeanOf(map, ImageGray(2, 2, 0.3f)), meanOf(map));
+  EXPECT_DOUBLE_EQ(weightedMeanOf(map, ImageGray(2, 2, 0)), meanOf(map));
+  EXPECT_EQ(weightedMeanOf({}, {}), 0);
+  EXPECT_THROW(weightedMeanOf(map, ImageGray(4, 1, 1)), Error);
+}
+
 TEST(Flip, AgreesWithItsAuthorsTool) {
   SACCADE_SHARED_FILE(folder, "references/flip");
   std::ifstream file(folder / "expected.json");

@@ -171,6 +171,28 @@ TEST(PathTracer, TheSameImageForAnyNumberOfThreads) {
   }
 }
 
+TEST(PathTracer, PassesAddUpToOnePicture) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const core::View view = smallView(m.scene, 20, 15);
+  const PathResult whole = tracePaths(world, view, options(16, 6), {});
+  core::Image<glm::dvec3> sum(20, 15, glm::dvec3(0));
+  std::uint64_t rays = 0;
+  for (const std::uint64_t first : {0, 8}) {
+    PathOptions o = options(8, 6);
+    o.firstSample = first;
+    const PathResult pass = tracePaths(world, view, o, {});
+    for (std::size_t i = 0; i < sum.pixels().size(); ++i)
+      sum.pixels()[i] += glm::dvec3(pass.radiance.pixels()[i]);
+    rays += pass.counters.rays;
+  }
+  EXPECT_EQ(rays, whole.counters.rays);
+  for (std::size_t i = 0; i < sum.pixels().size(); ++i) {
+    for (int c = 0; c < 3; ++c)
+      EXPECT_FLOAT_EQ(static_cast<float>(sum.pixels()[i][c] / 2), whole.radiance.pixels()[i][c]);
+  }
+}
+
 TEST(PathTracer, VarianceIsThatOfTheMean) {
   const SceneMaker m = room();
   const World world(m.scene, planOf());
