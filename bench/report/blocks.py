@@ -1,0 +1,231 @@
+"""What a section of the page is made of: plots, tables and picture galleries, and how records become tables and galleries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Iterable, Sequence
+
+from plots import Plot
+from records import LOAD_MATTERS, Record, number_text, value_text
+
+# Metric: how it is called, and which way is better ("" where neither is).
+METRICS: dict[str, tuple[str, str]] = {
+    "relmse": ("relative MSE", "lower"),
+    "rmse": ("RMSE", "lower"),
+    "psnr": ("PSNR (dB)", "higher"),
+    "ssim": ("SSIM", "higher"),
+    "flip": ("FLIP, mean", "lower"),
+    "flip_median": ("FLIP, median", "lower"),
+    "flip_p95": ("FLIP, 95th percentile", "lower"),
+    "flip_salient": ("FLIP weighted by saliency", "lower"),
+    "flip_step": ("FLIP from frame to frame", "lower"),
+    "seconds": ("time (s)", "lower"),
+    "frame_p50": ("frame time, median (ms)", "lower"),
+    "frame_p95": ("frame time, 95th percentile (ms)", "lower"),
+    "frame_p99": ("frame time, 99th percentile (ms)", "lower"),
+    "missed": ("missed deadlines", "lower"),
+    "samples_per_s": ("samples a second", "higher"),
+    "rays_per_s": ("rays a second", "higher"),
+    "peak_bytes": ("peak memory", "lower"),
+    "ours": ("ours", ""),
+    "paper": ("the paper's", ""),
+    "achieved": ("achieved", ""),
+    "allowed": ("allowed", ""),
+}
+
+_PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".svg")
+_TABLE_OPEN_ROWS = 16  # a longer table starts folded
+LOADED_MARK = "†"
+
+
+@dataclass(frozen=True)
+class Cell:
+    text: str
+    number: bool = False
+    bad: bool = False
+
+
+@dataclass(frozen=True)
+class PlotBlock:
+    plot: Plot
+    caption: str = ""
+    kind: str = "plot"
+
+
+@dataclass(frozen=True)
+class TableBlock:
+    caption: str
+    columns: list[str]
+    rows: list[list[Cell]]
+    kind: str = "table"
+
+    @property
+    def folded(self) -> bool:
+        return len(self.rows) > _TABLE_OPEN_ROWS
+
+
+@dataclass(frozen=True)
+class GalleryRow:
+    """Pictures side by side, each with its role, and the numbers under them."""
+
+    title: str
+    pictures: list[tuple[str, str]]
+    numbers: str
+    loaded: bool
+
+
+@dataclass(frozen=True)
+class GalleryBlock:
+    caption: str
+    rows: list[GalleryRow]
+    folded: bool = False
+    kind: str = "gallery"
+
+
+Block = PlotBlock | TableBlock | GalleryBlock
+
+
+@dataclass
+class Context:
+    """What a section may look at: its own records, everybody's, and where the page stands."""
+
+    folder: Path
+    records: list[Record]
+    everything: list[Record] = field(default_factory=list)
+
+
+def metric_name(metric: str) -> str:
+    return METRICS.get(metric, (metric.replace("_", " "), ""))[0]
+
+
+def axis_label(metric: str, unit: str = "") -> str:
+    """A metric as the title of an axis."""
+    name = metric_name(metric)
+    return f"{name} ({unit})" if unit and "(" not in name else name
+
+
+def hint(metric: str) -> str:
+    """Which way of a metric is better, in words."""
+    better = METRICS.get(metric, ("", ""))[1]
+    return {"lower": "lower is better ↓", "higher": "higher is better ↑"}.get(better, "")
+
+
+def natural(text: str) -> tuple[tuple[int, float, str], ...]:
+    """A sorting key by which 8 comes before 16 and words keep their alphabet."""
+    parts: list[tuple[int, float, str]] = []
+    for part in text.replace(",", " ").split():
+        try:
+            parts.append((0, float(part), ""))
+        except ValueError:
+            parts.append((1, 0.0, part))
+    return tuple(parts)
+
+
+def varying(records: Iterable[Record], names: Sequence[str] | None = None) -> list[str]:
+    """Labels that differ among the records (a missing one counts), in the order of their first use."""
+    records = list(records)
+    seen = list(dict.fromkeys(name for record in records for name in record.labels)) if names is None else names
+    return [name for name in seen if len({record.labels.get(name) for record in records}) > 1]
+
+
+def variant_name(record: Record, names: Sequence[str]) -> str:
+    """A record's curve or row by the labels that matter: "corrective, order task"."""
+    words = []
+    for name in names:
+        if name in record.labels:
+            value = record.labels[name]
+            words.append(value if name in ("method", "renderer", "what", "test", "scene") else f"{name} {value}")
+    return ", ".join(words)
+
+
+def at_text(record: Record) -> str:
+    names = {"budget_ms": "ms", "seconds": "s", "x": "", "samples": "samples", "spp": "spp"}
+    return ", ".join(f"{number_text(x)} {names.get(name, name)}".strip() for name, x in record.at.items())
+
+
+def by_label(records: Iterable[Record], name: str) -> dict[str, list[Record]]:
+    """Records by the value of one label; those without it stand under ""."""
+    groups: dict[str, list[Record]] = {}
+    for record in records:
+        groups.setdefault(record.labels.get(name, ""), []).append(record)
+    return dict(sorted(groups.items(), key=lambda group: natural(group[0])))
+
+
+def metrics_of(records: Iterable[Record]) -> list[str]:
+    """Metrics that occur, known ones first and in the table's order."""
+    found = dict.fromkeys(metric for record in records for metric in record.values)
+    known = [metric for metric in METRICS if metric in found]
+    return known + [metric for metric in found if metric not in METRICS]
+
+
+def value_cell(record: Record, metric: str) -> Cell:
+    value = record.values.get(metric)
+    if value is None:
+        return Cell("")
+    mark = LOADED_MARK if record.loaded and value.kind in LOAD_MATTERS else ""
+    return Cell(value_text(value) + mark, number=True)
+
+
+def record_table(records: Sequence[Record], caption: str, labels: Sequence[str] | None = None) -> TableBlock:
+    """One row a record: labels that differ, where it was measured, and all metrics as median and range."""
+    names = list(labels) if labels is not None else (varying(records) or list(records[0].labels))
+    metrics = metrics_of(records)
+    with_at = any(record.at for record in records)
+    with_note = any(record.note for record in records)
+    columns = names + (["at"] if with_at else []) + [metric_name(metric) for metric in metrics] + (["note"] if with_note else [])
+    rows = []
+    for record in records:
+        row = [Cell(record.labels.get(name, "")) for name in names]
+        row += [Cell(at_text(record), number=True)] if with_at else []
+        row += [value_cell(record, metric) for metric in metrics]
+        row += [Cell(record.note)] if with_note else []
+        rows.append(row)
+    return TableBlock(caption, columns, rows)
+
+
+def is_picture(folder: Path, path: str) -> bool:
+    """A picture that a browser shows and that lies inside the page's folder."""
+    if not path.lower().endswith(_PICTURE_SUFFIXES):
+        return False
+    target = (folder / path).resolve()
+    return target.is_relative_to(folder.resolve()) and target.is_file()
+
+
+def reference_picture(record: Record, everything: Iterable[Record]) -> str:
+    """The picture that a record was compared with: its own, or that of its scene's reference."""
+    if "reference" in record.files:
+        return record.files["reference"]
+    for other in everything:
+        if other.experiment == "reference" and other.labels.get("scene") == record.labels.get("scene"):
+            return other.files.get("picture", "")
+    return ""
+
+
+def gallery_row(context: Context, record: Record, title: str) -> GalleryRow | None:
+    """Reference | method | error map, with the numbers; None when the record has no picture."""
+    shown = [("reference", reference_picture(record, context.everything))]
+    shown += [("this method", record.files.get("picture", "")), ("FLIP map", record.files.get("error", ""))]
+    shown += [(role, path) for role, path in record.files.items() if role not in ("picture", "error", "reference")]
+    pictures = [(role, path) for role, path in shown if path and is_picture(context.folder, path)]
+    if not any(role != "reference" for role, _ in pictures):
+        return None
+    numbers = [f"{metric_name(metric)} {value_cell(record, metric).text}" for metric in metrics_of([record])]
+    return GalleryRow(title, pictures, " · ".join(numbers), record.loaded)
+
+
+def galleries(context: Context, records: Sequence[Record], caption: str) -> list[Block]:
+    """The pictures of each variant where it was let run longest, and, folded, all others."""
+    names = [name for name in varying(records) if name != "scene"]
+    variants: dict[str, list[Record]] = {}
+    for record in records:
+        variants.setdefault(variant_name(record, names), []).append(record)
+    last, others = [], []
+    for variant, group in variants.items():
+        group = sorted(group, key=lambda record: sum(record.at.values()))
+        rows = [gallery_row(context, record, " at ".join(filter(None, (variant, at_text(record))))) for record in group]
+        rows = [row for row in rows if row]
+        last += rows[-1:]
+        others += rows[:-1]
+    found = [GalleryBlock(caption, last)] if last else []
+    return found + ([GalleryBlock(f"{caption}: all other times and budgets", others, folded=True)] if others else [])
