@@ -54,11 +54,12 @@ bool runOne(const Experiment& experiment, Session& session, RecordBook& book) {
   return true;
 }
 
-/// Plots and page. Without Python the records stand alone.
+/// Plots and page, by Debian's own Python: its packages are not those of another one on the PATH. Without
+/// them the records stand alone.
 void writePage(const BenchOptions& o) {
   const std::string script = SACCADE_SOURCE_DIR "/bench/report/report.py";
   if (!std::filesystem::exists(script)) return;
-  const std::string command = "python3 '" + script + "' '" + o.folder.string() + "'";
+  const std::string command = "/usr/bin/python3 '" + script + "' '" + o.folder.string() + "'";
   if (std::system(command.c_str()) != 0)
     spdlog::warn("no plots and no page: install python3-matplotlib and python3-jinja2, then run {}", command);
 }

@@ -1,4 +1,4 @@
-"""What a section of the page is made of: plots, tables and picture galleries, and how records become tables and galleries."""
+"""What a section of the page is made of: plots, tables and galleries, and how records become tables and galleries."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from typing import Iterable, Sequence
 from plots import Plot
 from records import LOAD_MATTERS, Record, number_text, value_text
 
-# Metric: how it is called, and which way is better ("" where neither is).
-METRICS: dict[str, tuple[str, str]] = {
-    "relmse": ("relative MSE", "lower"),
-    "rmse": ("RMSE", "lower"),
-    "psnr": ("PSNR (dB)", "higher"),
-    "ssim": ("SSIM", "higher"),
-    "flip": ("FLIP, mean", "lower"),
-    "flip_median": ("FLIP, median", "lower"),
-    "flip_p95": ("FLIP, 95th percentile", "lower"),
-    "flip_salient": ("FLIP weighted by saliency", "lower"),
-    "flip_step": ("FLIP from frame to frame", "lower"),
-    "seconds": ("time (s)", "lower"),
-    "frame_p50": ("frame time, median (ms)", "lower"),
-    "frame_p95": ("frame time, 95th percentile (ms)", "lower"),
-    "frame_p99": ("frame time, 99th percentile (ms)", "lower"),
-    "missed": ("missed deadlines", "lower"),
-    "samples_per_s": ("samples a second", "higher"),
-    "rays_per_s": ("rays a second", "higher"),
-    "peak_bytes": ("peak memory", "lower"),
-    "ours": ("ours", ""),
-    "paper": ("the paper's", ""),
-    "achieved": ("achieved", ""),
-    "allowed": ("allowed", ""),
+# Metric: how it is called, in the order of columns.
+METRICS: dict[str, str] = {
+    "relmse": "relative MSE",
+    "rmse": "RMSE",
+    "psnr": "PSNR (dB)",
+    "ssim": "SSIM",
+    "flip": "FLIP, mean",
+    "flip_median": "FLIP, median",
+    "flip_p95": "FLIP, 95th percentile",
+    "flip_salient": "FLIP weighted by saliency",
+    "flip_step": "FLIP from frame to frame",
+    "seconds": "time (s)",
+    "frame_p50": "frame time, median (ms)",
+    "frame_p95": "frame time, 95th percentile (ms)",
+    "frame_p99": "frame time, 99th percentile (ms)",
+    "missed": "missed deadlines",
+    "samples_per_s": "samples a second",
+    "rays_per_s": "rays a second",
+    "peak_bytes": "peak memory",
+    "ours": "ours",
+    "paper": "the paper's",
+    "achieved": "achieved",
+    "allowed": "allowed",
 }
 
 _PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".svg")
@@ -49,7 +49,6 @@ class Cell:
 @dataclass(frozen=True)
 class PlotBlock:
     plot: Plot
-    caption: str = ""
     kind: str = "plot"
 
 
@@ -96,7 +95,7 @@ class Context:
 
 
 def metric_name(metric: str) -> str:
-    return METRICS.get(metric, (metric.replace("_", " "), ""))[0]
+    return METRICS.get(metric, metric.replace("_", " "))
 
 
 def axis_label(metric: str, unit: str = "") -> str:
@@ -105,10 +104,12 @@ def axis_label(metric: str, unit: str = "") -> str:
     return f"{name} ({unit})" if unit and "(" not in name else name
 
 
-def hint(metric: str) -> str:
-    """Which way of a metric is better, in words."""
-    better = METRICS.get(metric, ("", ""))[1]
-    return {"lower": "lower is better ↓", "higher": "higher is better ↑"}.get(better, "")
+def hint(records: Iterable[Record], metrics: Sequence[str]) -> str:
+    """Which way of the metrics is better, in words; nothing where they disagree."""
+    better = {record.values[metric].better for record in records for metric in metrics if metric in record.values}
+    return (
+        {"lower": "lower is better ↓", "higher": "higher is better ↑"}.get(better.pop(), "") if len(better) == 1 else ""
+    )
 
 
 def natural(text: str) -> tuple[tuple[int, float, str], ...]:
@@ -173,7 +174,12 @@ def record_table(records: Sequence[Record], caption: str, labels: Sequence[str] 
     metrics = metrics_of(records)
     with_at = any(record.at for record in records)
     with_note = any(record.note for record in records)
-    columns = names + (["at"] if with_at else []) + [metric_name(metric) for metric in metrics] + (["note"] if with_note else [])
+    columns = (
+        names
+        + (["at"] if with_at else [])
+        + [metric_name(metric) for metric in metrics]
+        + (["note"] if with_note else [])
+    )
     rows = []
     for record in records:
         row = [Cell(record.labels.get(name, "")) for name in names]

@@ -12,7 +12,9 @@ from pathlib import Path
 try:
     import matplotlib
 except ModuleNotFoundError as error:  # another python3 than Debian's may come first on the PATH
-    raise SystemExit("saccade: error: this python3 has no matplotlib; run scripts/install and use Debian's own, /usr/bin/python3") from error
+    raise SystemExit(
+        "saccade: error: this python3 has no matplotlib; run scripts/install and use Debian's own, /usr/bin/python3"
+    ) from error
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot  # noqa: E402  (the backend comes first)
@@ -76,7 +78,7 @@ class Line:
 
 @dataclass
 class Panel:
-    """One pair of axes; `hint` says which way is better. `diagonal` names the line y = x, where that means something."""
+    """One pair of axes; `hint` says which way is better, `diagonal` names the line y = x where that means something."""
 
     hint: str
     x_label: str
@@ -113,7 +115,11 @@ def styles(names: list[str]) -> dict[str, dict[str, object]]:
         else:
             over = turn - len(free)
             place, dash, turn = rest[over % len(rest)], 1 + over // len(rest) % 2, turn + 1
-        result[name] = {"color": _PALETTE[place], "marker": _MARKERS[(place + dash) % len(_MARKERS)], "linestyle": _DASHES[dash]}
+        result[name] = {
+            "color": _PALETTE[place],
+            "marker": _MARKERS[(place + dash) % len(_MARKERS)],
+            "linestyle": _DASHES[dash],
+        }
     return result
 
 
@@ -126,7 +132,9 @@ def draw(folder: Path, stem: str, title: str, panels: list[Panel]) -> Plot | Non
     looks = styles(names)
     columns = min(_PANELS_A_ROW, len(panels))
     rows = -(-len(panels) // columns)
-    figure, axes = pyplot.subplots(rows, columns, figsize=(PANEL_WIDTH * columns, PANEL_HEIGHT * rows + 0.8), squeeze=False)
+    figure, axes = pyplot.subplots(
+        rows, columns, figsize=(PANEL_WIDTH * columns, PANEL_HEIGHT * rows + 0.8), squeeze=False
+    )
     cells = list(axes.flat)
     for cell, panel in zip(cells, panels):
         _draw_panel(cell, panel, looks)
@@ -140,7 +148,9 @@ def draw(folder: Path, stem: str, title: str, panels: list[Panel]) -> Plot | Non
     return _save(folder, stem, figure, title, f"{title}: {shown} against {panels[0].x_label}, for {', '.join(names)}")
 
 
-def ratios(folder: Path, stem: str, title: str, x_label: str, found: list[tuple[str, float]], mark: Line) -> Plot | None:
+def ratios(
+    folder: Path, stem: str, title: str, x_label: str, found: list[tuple[str, float]], mark: Line
+) -> Plot | None:
     """One row a name: how far its ratio lies from the line that it is compared with, on a logarithmic axis."""
     found = [(name, ratio) for name, ratio in found if ratio > 0][::-1]
     if not found:
@@ -175,7 +185,8 @@ def _cleaned(panel: Panel) -> bool:
     """Drops what a logarithmic axis cannot show; whether anything is left."""
     for curve in panel.curves:
         curve.points = sorted(
-            (p for p in curve.points if (p.x > 0 or not panel.log_x) and (p.y > 0 or not panel.log_y)), key=lambda p: p.x
+            (p for p in curve.points if (p.x > 0 or not panel.log_x) and (p.y > 0 or not panel.log_y)),
+            key=lambda p: p.x,
         )
     panel.curves = [curve for curve in panel.curves if curve.points]
     panel.lines = [line for line in panel.lines if line.y > 0 or not panel.log_y]
@@ -205,14 +216,24 @@ def _draw_panel(axes: Axes, panel: Panel, looks: dict[str, dict[str, object]]) -
             **looks[curve.name],
         )
         loaded = [p for p in curve.points if p.loaded]
-        axes.plot([p.x for p in loaded], [p.y for p in loaded], "o", color="none", markeredgecolor="#B00000", markersize=12)
+        axes.plot(
+            [p.x for p in loaded], [p.y for p in loaded], "o", color="none", markeredgecolor="#B00000", markersize=12
+        )
     if panel.log_x:
         axes.set_xscale("log")
     if panel.log_y:
         axes.set_yscale("log")
     for line in panel.lines:
         axes.axhline(line.y, color="#555555", linewidth=1.2, linestyle=(0, (4, 3)))
-        axes.text(0.01, line.y, f" {line.name}", transform=axes.get_yaxis_transform(), va="bottom", fontsize=8, color="#333333")
+        axes.text(
+            0.01,
+            line.y,
+            f" {line.name}",
+            transform=axes.get_yaxis_transform(),
+            va="bottom",
+            fontsize=8,
+            color="#333333",
+        )
     if panel.diagonal:
         xs = sorted({p.x for curve in panel.curves for p in curve.points})
         axes.plot(xs, xs, color="#555555", linewidth=1.2, linestyle=(0, (4, 3)))

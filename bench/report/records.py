@@ -30,6 +30,7 @@ class Value:
     repeats: int = 1
     unit: str = ""
     kind: str = "error"
+    better: str = "lower"
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,15 @@ def _value(raw: Any) -> Value | None:
     median = float(raw["median"])
     low = float(raw["min"]) if _finite(raw.get("min")) else median
     high = float(raw["max"]) if _finite(raw.get("max")) else median
-    return Value(median, low, high, int(raw.get("repeats") or 1), str(raw.get("unit") or ""), str(raw.get("kind") or "error"))
+    return Value(
+        median,
+        low,
+        high,
+        int(raw.get("repeats") or 1),
+        str(raw.get("unit") or ""),
+        str(raw.get("kind") or "error"),
+        str(raw.get("better") or "neither"),
+    )
 
 
 def _run(raw: Mapping[str, Any]) -> Run:
@@ -100,7 +109,7 @@ def _run(raw: Mapping[str, Any]) -> Run:
         machine=machine_text(raw.get("machine", {})),
         seed=raw.get("seed"),
         dirty=bool(raw.get("dirty", False)),
-        other_load=raw["otherLoad"] if _finite(raw.get("otherLoad")) else None,
+        other_load=raw["other_load"] if _finite(raw.get("other_load")) else None,
         software={str(name): str(version) for name, version in (raw.get("software") or {}).items()},
     )
 
@@ -146,7 +155,9 @@ def load(path: Path) -> list[Record]:
         try:
             records.append(_record(entry, runs))
         except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
-            raise RecordError(f"{path}: record {position} ({entry!r:.80}) is not as the schema says: {error!r}") from error
+            raise RecordError(
+                f"{path}: record {position} ({entry!r:.80}) is not as the schema says: {error!r}"
+            ) from error
     return records
 
 

@@ -20,7 +20,9 @@ from sections import SECTIONS, section_of
 try:
     import jinja2
 except ModuleNotFoundError as error:
-    raise SystemExit("saccade: error: this python3 has no jinja2; run scripts/install and use Debian's own, /usr/bin/python3") from error
+    raise SystemExit(
+        "saccade: error: this python3 has no jinja2; run scripts/install and use Debian's own, /usr/bin/python3"
+    ) from error
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,9 @@ def build_sections(folder: Path, records: list[Record]) -> list[Shown]:
         own = [record for record in records if record.experiment == name]
         section = section_of(name)
         sources = [f"{run.command} (commit {run.commit})" for run in runs_of(own)]
-        sections.append(Shown(name, section.title, section.question, sources, section.build(Context(folder, own, records))))
+        sections.append(
+            Shown(name, section.title, section.question, sources, section.build(Context(folder, own, records)))
+        )
     return sections
 
 
@@ -65,7 +69,11 @@ def write_page(folder: Path) -> Path:
     if not records:
         raise RecordError(f"{folder / 'records.json'} holds no records; run `saccade bench quick -o {folder}`")
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
     )
     html = environment.get_template("page.html.j2").render(
         runs=runs_of(records),
@@ -80,7 +88,9 @@ def write_page(folder: Path) -> Path:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Makes plots and one HTML page of the records that `saccade bench` wrote.")
+    parser = argparse.ArgumentParser(
+        description="Makes plots and one HTML page of the records that `saccade bench` wrote."
+    )
     parser.add_argument("folder", type=Path, metavar="DIR", help="the folder that holds records.json")
     try:
         print(write_page(parser.parse_args().folder))

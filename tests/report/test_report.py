@@ -1,4 +1,4 @@
-"""The page of a measurement: every experiment finds its place, every file that the page names exists, gaps do no harm."""
+"""The page of a measurement: every experiment finds its place, every file named exists, gaps do no harm."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import xml.dom.minidom
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "bench" / "report"), str(Path(__file__).resolve().parent)]
+import builders  # noqa: E402
 import records  # noqa: E402
 import report  # noqa: E402
-import sections  # noqa: E402
 import synthetic  # noqa: E402
 from plots import styles  # noqa: E402
 
@@ -74,13 +74,17 @@ class WholePage(unittest.TestCase):
     def test_plots_are_whole_and_come_in_both_forms(self) -> None:
         drawn = sorted((self.folder / "plots").glob("*.svg"))
         names = {path.stem for path in drawn}
-        self.assertLessEqual({"still-cornell-methods", "still-cornell-order", "still-cornell-cache", "growth-triangles", "hard"}, names)
+        self.assertLessEqual(
+            {"still-cornell-methods", "still-cornell-order", "still-cornell-cache", "growth-triangles", "hard"}, names
+        )
         for path in drawn:
             xml.dom.minidom.parse(str(path))
             self.assertEqual(path.with_suffix(".png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
 
     def test_every_value_with_its_range_stands_on_the_page(self) -> None:
-        shown = [record for record in self.records if record.experiment in ("still", "moving", "rays", "growth", "peers")]
+        shown = [
+            record for record in self.records if record.experiment in ("still", "moving", "rays", "growth", "peers")
+        ]
         for record in shown:
             for value in record.values.values():
                 self.assertIn(records.value_text(value), self.page.text, record.key)
@@ -112,7 +116,7 @@ class Parts(unittest.TestCase):
             self.record(method="corrective", order="task", cache="on"),
             self.record(method="corrective", order="attention", cache="off"),
         ]
-        plots = {title: [record.labels for record in chosen] for title, chosen, _ in sections.questions(found)}
+        plots = {title: [record.labels for record in chosen] for title, chosen, _ in builders.questions(found)}
         self.assertEqual(set(plots), {"methods", "order", "cache"})
         self.assertEqual(plots["methods"], [found[0].labels, found[1].labels])
         self.assertEqual(plots["order"], [found[1].labels, found[2].labels])
@@ -120,21 +124,31 @@ class Parts(unittest.TestCase):
 
     def test_measured_seconds_are_the_cost_where_there_are_any(self) -> None:
         record = self.record(method="path")
-        self.assertEqual(sections.point(record, "relmse").x, 1.0)
+        self.assertEqual(builders.point(record, "relmse").x, 1.0)
         record.values["seconds"] = records.Value(1.5, 1.4, 1.6, 5, "s", "time")
-        self.assertEqual(sections.point(record, "relmse").x, 1.5)
+        self.assertEqual(builders.point(record, "relmse").x, 1.5)
 
     def test_up_to_two_dozen_curves_look_different(self) -> None:
         looks = [tuple(look.values()) for look in styles([f"curve {i}" for i in range(24)]).values()]
         self.assertEqual(len(set(map(str, looks))), 24)
 
     def test_numbers_keep_their_significant_digits(self) -> None:
-        for number, text in ((0.0, "0"), (1234567, "1,234,567"), (0.012345, "0.0123"), (0.1, "0.100"), (9.996, "10.0"), (1234.5, "1,234"), (2e-5, "2.00e-05")):
+        for number, text in (
+            (0.0, "0"),
+            (1234567, "1,234,567"),
+            (0.012345, "0.0123"),
+            (0.1, "0.100"),
+            (9.996, "10.0"),
+            (1234.5, "1,234"),
+            (2e-5, "2.00e-05"),
+        ):
             self.assertEqual(records.number_text(number), text)
 
     def test_what_is_not_finite_is_left_out(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            entry = synthetic.record("a/b", {}, {"x": math.nan}, {"v": {"median": math.inf}, "w": {"median": None}, "u": 3})
+            entry = synthetic.record(
+                "a/b", {}, {"x": math.nan}, {"v": {"median": math.inf}, "w": {"median": None}, "u": 3}
+            )
             synthetic.write(Path(folder), [entry])
             (loaded,) = records.load(Path(folder) / "records.json")
             self.assertEqual((dict(loaded.values), dict(loaded.at)), ({}, {}))
