@@ -1,7 +1,5 @@
 #include "app/session/stats.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -21,9 +19,13 @@ double RunStats::framePercentileMs(double p) const {
 }
 
 std::uint64_t peakBytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+  // Not getrusage's, which remembers the process before its exec.
+  std::ifstream status("/proc/self/status");
+  for (std::string field; status >> field;) {
+    std::uint64_t kib = 0;
+    if (field == "VmHWM:" && status >> kib) return kib * 1024;
+  }
+  return 0;
 }
 
 void writeStats(const std::filesystem::path& file, const RunStats& s) {

@@ -35,7 +35,7 @@ struct RunStats {
   double framePercentileMs(double p) const;
 };
 
-/// Peak resident memory of this process in bytes.
+/// Peak resident memory of this process in bytes; 0 where the system does not tell.
 std::uint64_t peakBytes();
 
 /// Throws core::Error when the file cannot be written.

@@ -65,6 +65,14 @@ Value Value::ratio(const std::vector<double>& repeats, Better better) {
 }
 Value Value::bytes(double value) { return over({value}, "bytes", Kind::bytes, Better::lower); }
 
+Value Value::times(double factor) const {
+  Value value = *this;
+  value.median *= factor;
+  value.min *= factor;
+  value.max *= factor;
+  return value;
+}
+
 const Record* RecordBook::find(const std::string& key) const {
   const auto it = std::find_if(records.begin(), records.end(), [&](const Record& r) { return r.key == key; });
   return it == records.end() ? nullptr : &*it;

@@ -43,6 +43,8 @@ struct Value {
   static Value rate(const std::vector<double>& repeats);
   static Value ratio(const std::vector<double>& repeats, Better better);
   static Value bytes(double value);
+  /// The same figure in another unit, or by another measure of size.
+  Value times(double factor) const;
   /// Errors of repeats that are not deterministic: pictures that had a time to be made in.
   static Value errors(const std::vector<double>& repeats);
 };

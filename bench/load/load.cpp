@@ -1,176 +1,142 @@
-// From file to first frame: seconds and bytes by stage, per million triangles, beside the bare parse of the
-// same file by tinygltf or tinyobjloader (file read, JSON or text parsed, buffers copied; images left
-// encoded, and again with its images decoded). Every measurement runs in a process of its own, so that peak
-// bytes are its own; medians of REPEATS. Maps are baked (preview) before anything is measured, and read from
-// the cache. Usage: bench_load REPEATS SCENE[@UNIT_SCALE]...
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "bench/load/load.h"
 
 #include <array>
-#include <cstdlib>
-#include <functional>
 
-#include "bench/common.h"
+#include "app/session/headless.h"
+#include "app/session/stats.h"
+#include "app/session/workspace.h"
 #include "bench/load/bare_parse.h"
 
 namespace saccade::bench {
 namespace {
 
-enum Figure : std::size_t {
-  load,
-  maps,
-  world,
-  upload,
-  frame,
-  total,
-  loadBytes,
-  totalBytes,
-  triangles,
-  count
-};
-using Figures = std::array<double, Figure::count>;
+constexpr app::ImageSize kSize{512, 512};
 
 struct Subject {
   std::string file;
-  float unitScale = 1;
+  std::string unitScale = "1";  ///< metres per unit
 };
 
-double peakBytes() {
-  rusage use{};
-  getrusage(RUSAGE_SELF, &use);
-  return 1024.0 * static_cast<double>(use.ru_maxrss);
-}
-
-/// Runs `work` in a child process and returns what it found. Ends the program when the child fails.
-Figures inChild(const std::function<Figures()>& work) {
-  int ends[2];
-  if (pipe(ends) != 0) std::abort();
-  std::fflush(stdout);
-  const pid_t child = fork();
-  if (child == 0) {
-    Figures found{};
-    try {
-      found = work();
-    } catch (const std::exception& e) {
-      std::fprintf(stderr, "%s\n", e.what());
-      _exit(1);
-    }
-    _exit(write(ends[1], found.data(), sizeof found) == sizeof found ? 0 : 1);
-  }
-  close(ends[1]);
-  Figures found{};
-  const bool whole = read(ends[0], found.data(), sizeof found) == sizeof found;
-  close(ends[0]);
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (!whole || status != 0) std::exit(1);
-  return found;
-}
+double peak() { return static_cast<double>(app::peakBytes()); }
 
 app::SceneOptions optionsOf(const Subject& s) {
   app::SceneOptions options;
   options.path = s.file;
   options.quality = "preview";
-  options.load.unitScale = s.unitScale;
+  options.load.unitScale = std::stof(s.unitScale);
   return options;
 }
 
-/// load and loadBytes only.
-Figures bare(const Subject& s, bool decodeImages) {
-  const double before = peakBytes();
-  Figures f{};
-  f[load] = timed([&] { parseBare(s.file, decodeImages); });
-  f[loadBytes] = peakBytes() - before;
-  return f;
+/// A bundled scene, and those of the shared folder that are there.
+std::vector<Subject> subjectsOf(Session& session) {
+  std::vector<Subject> subjects;
+  for (const std::string& file : session.options().scenes) subjects.push_back({file});
+  if (!subjects.empty()) return subjects;
+  subjects.push_back({bundledScene("gallery")});
+  if (session.quick()) return subjects;
+  const std::array<Subject, 4> shared = {{{"scenes/rooms/chess-board_undraco.glb"},
+                                          {"scenes/conference/conference.obj", "0.003"},
+                                          {"scenes/samples/MetalRoughSpheresNoTextures.glb"},
+                                          {"scenes/samples/WaterBottle.glb"}}};
+  for (const Subject& s : shared) {
+    if (const auto file = sharedFile(s.file)) {
+      subjects.push_back({*file, s.unitScale});
+    } else {
+      session.say("load: " + s.file + " of the shared folder is not here; left out");
+    }
+  }
+  return subjects;
 }
 
-Figures ours(const Subject& s) {
-  const double before = peakBytes();
-  const app::SceneOptions options = optionsOf(s);
+/// Figures by name, round by round.
+using Rounds = std::map<std::string, std::vector<double>>;
+void append(Rounds& rounds, const Figures& figures) {
+  for (const auto& [name, value] : figures) rounds[name].push_back(value);
+}
+
+Record recordOf(const Subject& s, const Rounds& parse, const Rounds& decode, const Rounds& ours) {
+  const std::string name = sceneName(s.file);
+  const double triangles = ours.at("triangles").front();
+  Record record;
+  record.key = "load/" + name;
+  record.labels = {{"scene", name}};
+  record.values = {
+      {"triangles", Value::count(triangles)},
+      {"parse", Value::seconds(parse.at("seconds"))},
+      {"parse_bytes", Value::bytes(spread(parse.at("bytes")).median)},
+      {"parse_images", Value::seconds(decode.at("seconds"))},
+      {"parse_images_bytes", Value::bytes(spread(decode.at("bytes")).median)},
+      {"load_bytes", Value::bytes(spread(ours.at("load_bytes")).median)},
+      {"bytes", Value::bytes(spread(ours.at("bytes")).median)},
+      {"load_ratio", Value::ratio(ratios(ours.at("load"), decode.at("seconds")), Better::lower)},
+      {"total_ratio", Value::ratio(ratios(ours.at("total"), decode.at("seconds")), Better::lower)}};
+  for (const char* stage : {"load", "maps", "world", "upload", "frame", "total"})
+    record.values[stage] = Value::seconds(ours.at(stage));
+  record.values["total_per_million"] = record.values.at("total").times(1e6 / triangles);
+  record.values["bytes_per_million"] = record.values.at("bytes").times(1e6 / triangles);
+  return record;
+}
+
+void measureScene(Session& session, const Subject& s) {
+  // So that every process finds the maps in the cache.
+  app::openWorkspace(optionsOf(s), {.threads = app::tracerThreads({})}, session.stop());
+  const LoadWatch watch;
+  std::array<Rounds, 3> rounds;  // bare parse, the same with images, ours
+  const auto once = [&](int variant) {
+    if (variant == 2) return inChild("load", {s.file, s.unitScale}, session.stop());
+    return inChild("parse", {s.file, variant == 1 ? "images" : "encoded"}, session.stop());
+  };
+  alternate(3, kRepeats, session.stop(), [&](int variant, int round) {
+    const Figures figures = once(variant);
+    if (round >= 0) append(rounds[static_cast<std::size_t>(variant)], figures);
+  });
+  session.add(recordOf(s, rounds[0], rounds[1], rounds[2]), &watch);
+}
+
+}  // namespace
+
+Figures parseFile(const Arguments& arguments, const std::stop_token&) {
+  const double before = peak();
+  const double seconds = timed([&] { parseBare(arguments.at(0), arguments.at(1) == "images"); });
+  return {{"seconds", seconds}, {"bytes", peak() - before}};
+}
+
+Figures loadAndDraw(const Arguments& arguments, const std::stop_token&) {
+  const double before = peak();
+  const app::SceneOptions options = optionsOf({arguments.at(0), arguments.at(1)});
   app::Workspace w;
-  Figures f{};
-  f[load] = timed([&] {
-    w.scene = core::loadScene(s.file, options.load);
+  Figures f;
+  f["load"] = timed([&] {
+    w.scene = core::loadScene(options.path, options.load);
     w.plan = core::makePlan(w.scene);
   });
-  f[loadBytes] = peakBytes() - before;
-  f[triangles] = static_cast<double>(w.scene.triangleCount());
-  f[maps] = timed([&] {
+  f["load_bytes"] = peak() - before;
+  f["triangles"] = static_cast<double>(w.scene.triangleCount());
+  f["maps"] = timed([&] {
     const std::uint64_t key = core::sceneKey(w.scene);
     w.maps = core::readMaps(app::mapsPath(key, options, {}), key);
     core::applyCharts(w.scene, w.maps.charts);
   });
-  f[world] = timed([&] {
+  f["world"] = timed([&] {
     w.world = std::make_unique<raytrace::World>(w.scene, w.plan);
     w.world->setMaps(&w.maps);
   });
   std::unique_ptr<app::Headless> gl;
-  f[upload] = timed([&] { gl = std::make_unique<app::Headless>(app::RunOptions{}, w); });
-  f[frame] =
-      timed([&] { gl->renderer->render(core::View(w.scene.cameras[0], 512, 512, w.scene.bounds), 1, 10); });
-  f[total] = f[load] + f[maps] + f[world] + f[upload] + f[frame];
-  f[totalBytes] = peakBytes() - before;
+  f["upload"] = timed([&] { gl = std::make_unique<app::Headless>(app::RunOptions{}, w); });
+  f["frame"] = timed([&] {
+    const core::View view(w.scene.cameras[0], kSize.width, kSize.height, w.scene.bounds);
+    gl->renderer->render(view, 1, app::CorrectiveOptions{}.nMin);
+  });
+  f["total"] = f["load"] + f["maps"] + f["world"] + f["upload"] + f["frame"];
+  f["bytes"] = peak() - before;
   return f;
 }
 
-/// Medians, figure by figure.
-Figures medianOf(int repeats, const std::function<Figures()>& work) {
-  std::vector<Figures> runs;
-  runs.reserve(static_cast<std::size_t>(repeats));
-  for (int i = 0; i < repeats; ++i) runs.push_back(inChild(work));
-  Figures out{};
-  for (std::size_t figure = 0; figure < Figure::count; ++figure) {
-    std::vector<double> values;
-    values.reserve(runs.size());
-    for (const Figures& run : runs) values.push_back(run[figure]);
-    out[figure] = spread(values).median;
+void measureLoad(Session& session) {
+  for (const Subject& subject : subjectsOf(session)) {
+    session.say("load: " + sceneName(subject.file));
+    measureScene(session, subject);
   }
-  return out;
 }
 
-void measure(const Subject& s, int repeats) {
-  inChild([&] {
-    app::openWorkspace(optionsOf(s), {.threads = static_cast<int>(std::thread::hardware_concurrency())}, {});
-    return Figures{};
-  });
-  const Figures parse = medianOf(repeats, [&] { return bare(s, false); });
-  const bool holdsImages = !s.file.ends_with(".obj");
-  const Figures decode = holdsImages ? medianOf(repeats, [&] { return bare(s, true); }) : parse;
-  const Figures f = medianOf(repeats, [&] { return ours(s); });
-  const double millions = f[triangles] / 1e6, mb = 1e6;
-  std::printf("%s: %.0f triangles\n", s.file.substr(s.file.rfind('/') + 1).c_str(), f[triangles]);
-  std::printf("  bare parse %.3f s, %.0f MB", parse[load], parse[loadBytes] / mb);
-  if (holdsImages) std::printf("; with images decoded %.3f s, %.0f MB", decode[load], decode[loadBytes] / mb);
-  std::printf(
-      "\n  load %.3f s, %.0f MB (%.2f times the parse%s); maps %.3f s, world %.3f s, upload %.3f s, "
-      "first frame %.3f s\n",
-      f[load], f[loadBytes] / mb, f[load] / decode[load], holdsImages ? " with images" : "", f[maps],
-      f[world], f[upload], f[frame]);
-  std::printf("  file to first frame %.3f s (%.2f times the parse), peak %.0f MB\n", f[total],
-              f[total] / decode[load], f[totalBytes] / mb);
-  std::printf("  per million triangles: bare parse %.3f s, load %.3f s, first frame %.3f s, %.0f MB\n",
-              parse[load] / millions, f[load] / millions, f[total] / millions, f[totalBytes] / mb / millions);
-}
-
-int run(int argc, char** argv) {
-  app::setupLog();
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: bench_load REPEATS SCENE[@UNIT_SCALE]...\n");
-    return 2;
-  }
-  printProvenance(argc, argv);
-  for (int i = 2; i < argc; ++i) {
-    const std::string text = argv[i];
-    const std::size_t at = text.rfind('@');
-    const Subject subject{text.substr(0, at),
-                          at == std::string::npos ? 1 : std::strtof(text.c_str() + at + 1, nullptr)};
-    measure(subject, std::max(1, std::atoi(argv[1])));
-  }
-  return 0;
-}
-
-}  // namespace
 }  // namespace saccade::bench
-
-int main(int argc, char** argv) { return saccade::bench::run(argc, argv); }

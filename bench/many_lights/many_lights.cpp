@@ -1,10 +1,8 @@
-// Many emissive triangles: one light sample's error and cost, by the light tree beside a choice by power
-// alone. Usage: bench_many_lights [SAMPLES]
+#include "bench/many_lights/many_lights.h"
+
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
-#include "bench/common.h"
 #include "core/math/random.h"
 #include "raytrace/alias_table.h"
 #include "raytrace/light_tree.h"
@@ -52,89 +50,118 @@ struct Hall {
   }
 };
 
-struct Result {
-  double relativeError = 0;  ///< standard deviation of one sample over the mean, root mean square over points
-  double nanoseconds = 0;    ///< of choosing a lamp
-};
+constexpr int kPoints = 200;     ///< on the floor
+constexpr int kSamples = 1024;   ///< a point, for the error
+constexpr int kDraws = 100'000;  ///< of one timing
 
-/// Chooses by `draw(point, u, lamp, probability)`; a sample is the unoccluded irradiance of the lamp's
+/// Chooses a lamp for a point from one uniform number; false: none.
+using Draw = std::function<bool(const Vec3& point, float u, std::uint32_t& lamp, float& probability)>;
+
+/// Variance over squared mean of one sample at a point: the unoccluded irradiance of the chosen lamp's
 /// centre.
-template <class Draw>
-Result measure(const Hall& hall, int samples, const Draw& draw) {
-  constexpr int kPoints = 200;
+double relativeVariance(const Hall& hall, const Vec3& point, std::uint32_t index, const Draw& draw) {
+  double sum = 0, squares = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    core::PixelSampler random(index, 0, static_cast<std::uint64_t>(i), 1);
+    std::uint32_t lamp = 0;
+    float probability = 0;
+    if (!draw(point, random.next1D(), lamp, probability)) continue;
+    const Vec3 to = hall.lamps[lamp].box.center() - point;
+    const float squared = glm::dot(to, to);
+    const float cosine = -glm::dot(hall.lamps[lamp].axis, to) / std::sqrt(squared);
+    const double e =
+        cosine > 0 ? static_cast<double>(cosine * to.y / (squared * std::sqrt(squared)) / probability) : 0;
+    sum += e;
+    squares += e * e;
+  }
+  const double mean = sum / kSamples;
+  return (squares / kSamples - mean * mean) / (mean * mean);
+}
+
+/// Standard deviation of one sample over the mean, root mean square over the floor.
+double relativeError(const Hall& hall, const Draw& draw) {
   std::mt19937 engine(2);
   std::uniform_real_distribution<float> u(-18, 18);
-  Result result;
-  for (int k = 0; k < kPoints; ++k) {
+  double sum = 0;
+  for (std::uint32_t k = 0; k < kPoints; ++k) {
     const Vec3 point(u(engine), 0, u(engine));
-    double sum = 0, squares = 0;
-    for (int i = 0; i < samples; ++i) {
-      core::PixelSampler random(static_cast<std::uint32_t>(k), 0, static_cast<std::uint64_t>(i), 1);
-      std::uint32_t lamp = 0;
-      float probability = 0;
-      if (!draw(point, random.next1D(), lamp, probability)) continue;
-      const Vec3 to = hall.lamps[lamp].box.center() - point;
-      const float squared = glm::dot(to, to);
-      const float cosine = -glm::dot(hall.lamps[lamp].axis, to) / std::sqrt(squared);
-      const double e =
-          cosine > 0 ? static_cast<double>(cosine * to.y / (squared * std::sqrt(squared)) / probability) : 0;
-      sum += e;
-      squares += e * e;
-    }
-    const double mean = sum / samples;
-    result.relativeError += (squares / samples - mean * mean) / (mean * mean) / kPoints;
+    sum += relativeVariance(hall, point, k, draw);
   }
-  result.relativeError = std::sqrt(result.relativeError);
+  return std::sqrt(sum / kPoints);
+}
+
+/// Of choosing a lamp.
+double nanoseconds(const Draw& draw) {
+  volatile float sink = 0;  // keeps the loop
   const double seconds = timed([&] {
-    float sink = 0;
-    for (int i = 0; i < kPoints * samples; ++i) {
+    float sum = 0;
+    for (int i = 0; i < kDraws; ++i) {
       core::PixelSampler random(static_cast<std::uint32_t>(i), 1, 0, 1);
       std::uint32_t lamp = 0;
       float probability = 0;
       draw(Vec3(static_cast<float>(i % 36) - 18, 0, 3), random.next1D(), lamp, probability);
-      sink += probability;
+      sum += probability;
     }
-    if (sink < 0) std::printf("\n");  // never; keeps the loop
+    sink = sum;
   });
-  result.nanoseconds = seconds * 1e9 / (static_cast<double>(kPoints) * samples);
-  return result;
+  return 1e9 * seconds / kDraws;
 }
 
-int run(int argc, char** argv) {
-  printProvenance(argc, argv);
-  const int samples = argc > 1 ? std::atoi(argv[1]) : 4096;
-  std::printf("%10s %8s %22s %22s %18s\n", "lamps", "depth", "error by tree, power", "ratio of samples",
-              "ns by tree, power");
-  for (const int count : {16, 100, 1000, 10000, 100000}) {
-    const Hall hall(count);
-    const double build = timed([&] { raytrace::LightTree warm(hall.lamps); });
-    const raytrace::LightTree tree(hall.lamps);
-    const std::vector<double> powers(hall.lamps.size(), 1);
-    const raytrace::AliasTable table(powers);
-    const Result byTree =
-        measure(hall, samples, [&](const Vec3& p, float u, std::uint32_t& lamp, float& chance) {
-          raytrace::LightTree::Drawn drawn;
-          if (!tree.draw(p, u, drawn)) return false;
-          lamp = drawn.lamp;
-          chance = drawn.probability;
-          return true;
-        });
-    const Result byPower =
-        measure(hall, samples, [&](const Vec3&, float u, std::uint32_t& lamp, float& chance) {
-          float rest = 0;
-          lamp = table.sample(u, rest);
-          chance = table.probability(lamp);
-          return true;
-        });
-    const double ratio = byPower.relativeError / byTree.relativeError;
-    std::printf("%10d %8d %11.2f, %9.2f %22.1f %9.0f, %7.0f   built in %.3f s\n", count, tree.depth(),
-                byTree.relativeError, byPower.relativeError, ratio * ratio, byTree.nanoseconds,
-                byPower.nanoseconds, build);
-  }
-  return 0;
+Value nanosecondsOf(const std::vector<double>& repeats) {
+  Value value = Value::milliseconds(repeats);
+  value.unit = "ns";
+  return value;
+}
+
+Record measureHall(int lamps, const std::stop_token& stop) {
+  const Hall hall(lamps);
+  std::optional<raytrace::LightTree> tree;
+  std::vector<double> buildSeconds;
+  for (int i = 0; i < kRepeats; ++i) buildSeconds.push_back(timed([&] { tree.emplace(hall.lamps); }));
+  const raytrace::AliasTable table(std::vector<double>(hall.lamps.size(), 1));
+  const Draw byTree = [&](const Vec3& point, float u, std::uint32_t& lamp, float& probability) {
+    raytrace::LightTree::Drawn drawn;
+    if (!tree->draw(point, u, drawn)) return false;
+    lamp = drawn.lamp;
+    probability = drawn.probability;
+    return true;
+  };
+  const Draw byPower = [&](const Vec3&, float u, std::uint32_t& lamp, float& probability) {
+    float rest = 0;
+    lamp = table.sample(u, rest);
+    probability = table.probability(lamp);
+    return true;
+  };
+  std::vector<double> treeNs, powerNs;
+  alternate(2, kRepeats, stop, [&](int variant, int round) {
+    const double ns = nanoseconds(variant == 0 ? byTree : byPower);
+    if (round >= 0) (variant == 0 ? treeNs : powerNs).push_back(ns);
+  });
+  const double treeError = relativeError(hall, byTree), powerError = relativeError(hall, byPower);
+  Record record;
+  record.key = "many-lights/" + std::to_string(lamps);
+  record.at = {{"lamps", lamps}};
+  record.values = {{"depth", Value::count(tree->depth())},
+                   {"error_tree", Value::error(treeError)},
+                   {"error_power", Value::error(powerError)},
+                   {"fewer_samples", Value::ratio({std::pow(powerError / treeError, 2)}, Better::higher)},
+                   {"choice_tree", nanosecondsOf(treeNs)},
+                   {"choice_power", nanosecondsOf(powerNs)},
+                   {"build", Value::seconds(buildSeconds)}};
+  return record;
 }
 
 }  // namespace
-}  // namespace saccade::bench
 
-int main(int argc, char** argv) { return saccade::bench::run(argc, argv); }
+void measureManyLights(Session& session) {
+  const std::vector<int> counts =
+      session.quick() ? std::vector<int>{100, 1000} : std::vector<int>{16, 100, 1000, 10000, 100000};
+  for (const int lamps : counts) {
+    session.say("many-lights: " + std::to_string(lamps));
+    const LoadWatch watch;
+    const Pinned one(mainCores());
+    session.add(measureHall(lamps, session.stop()), &watch);
+  }
+}
+
+}  // namespace saccade::bench

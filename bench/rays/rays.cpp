@@ -1,23 +1,21 @@
-// How much of Embree's speed is left in the corrective loop? Rays per core and second, shadow rays included,
-// over a bare rtcIntersect1/rtcOccluded1 loop that replays the very same rays in the same order. One thread;
-// the two alternate. Usage: bench_rays [SCENE.glb] [REPEATS]
-#include <cstdlib>
+#include "bench/rays/rays.h"
 
-#include "bench/common.h"
+#include "bench/harness/method.h"
 #include "core/corrective/queues.h"
 #include "raytrace/ray_log.h"
 
 namespace saccade::bench {
 namespace {
 
-/// All jobs of the frame in the queue's order, as a tracer thread does them.
+constexpr app::ImageSize kSize{512, 512};
+constexpr double kFrameSeconds = 0.05;  ///< Haber 2001, section 5, counts samples in 50 ms
+
+/// All jobs of a frame in the queue's order, as a tracer thread does them.
 std::uint64_t correctiveLoop(const raytrace::CorrectiveTracer& tracer, const core::FramePtr& frame,
-                             raytrace::RayLog* log, std::uint64_t& samples) {
-  core::RegionQueue regions(64);
+                             int jobSize, raytrace::RayCounters& counters) {
+  core::RegionQueue regions(jobSize);
   regions.beginFrame(frame);
-  raytrace::RayCounters counters;
-  counters.log = log;
-  samples = 0;
+  std::uint64_t samples = 0;
   while (const auto job = regions.tryPop()) {
     core::SampleBatch batch;
     core::forEachPixel(*job, [&](int x, int y) {
@@ -25,40 +23,67 @@ std::uint64_t correctiveLoop(const raytrace::CorrectiveTracer& tracer, const cor
     });
     samples += batch.samples.size();
   }
-  return counters.rays;
+  return samples;
 }
 
-int run(int argc, char** argv) {
-  app::setupLog();
-  printProvenance(argc, argv);
-  const auto workspace = openScene(argc > 1 ? argv[1] : bundledScene("gallery"));
-  const int repeats = argc > 2 ? std::atoi(argv[2]) : 5;
-  app::Headless gl({}, *workspace);
-  const core::FramePtr frame =
-      gl.renderer->render(core::View(workspace->scene.cameras[0], 512, 512, workspace->scene.bounds), 1, 10);
-  const raytrace::CorrectiveTracer tracer(*workspace->world, {});
+struct Rates {
+  std::vector<double> loop, bare;  ///< rays a second
+  std::uint64_t samples = 0, rays = 0;
+};
+
+Rates alternateLoops(const Stage& stage, const core::FramePtr& frame, const std::stop_token& stop) {
+  const raytrace::CorrectiveTracer tracer(*stage.workspace->world, {.seed = stage.seed});
+  const int jobSize = app::CorrectiveOptions{}.jobSize;
   raytrace::RayLog log;
-  std::uint64_t samples = 0;
-  const std::uint64_t rays = correctiveLoop(tracer, frame, &log, samples);  // warm-up, and the log
-  std::vector<double> loop, bare, ratio;
-  for (int i = 0; i < repeats; ++i) {
-    loop.push_back(timed([&] { correctiveLoop(tracer, frame, nullptr, samples); }));
-    bare.push_back(timed([&] { raytrace::replayRays(*workspace->world, log); }));
-    ratio.push_back(bare.back() / loop.back());
-  }
-  const double n = static_cast<double>(rays);
-  const Spread l = spread(loop), b = spread(bare), r = spread(ratio);
-  std::printf("%zu triangles, %llu samples, %llu rays (%.2f a sample)\n", workspace->scene.triangleCount(),
-              static_cast<unsigned long long>(samples), static_cast<unsigned long long>(rays),
-              n / static_cast<double>(samples));
-  std::printf("corrective loop %.2f Mray/s, bare replay %.2f Mray/s, ratio %.3f (%.3f to %.3f)\n",
-              n / l.median / 1e6, n / b.median / 1e6, r.median, r.min, r.max);
-  std::printf("in 50 ms on one core: %.0f samples, %.0f rays\n",
-              0.05 * static_cast<double>(samples) / l.median, 0.05 * n / l.median);
-  return 0;
+  raytrace::RayCounters logged;
+  logged.log = &log;
+  Rates rates;
+  rates.samples = correctiveLoop(tracer, frame, jobSize, logged);
+  rates.rays = logged.rays;
+  const auto n = static_cast<double>(rates.rays);
+  alternate(2, kRepeats, stop, [&](int variant, int round) {
+    raytrace::RayCounters counters;
+    const double seconds = variant == 0 ? timed([&] { correctiveLoop(tracer, frame, jobSize, counters); })
+                                        : timed([&] { raytrace::replayRays(*stage.workspace->world, log); });
+    if (round >= 0) (variant == 0 ? rates.loop : rates.bare).push_back(n / seconds);
+  });
+  return rates;
+}
+
+Record recordOf(const Stage& stage, const Rates& rates) {
+  const double raysPerSample = static_cast<double>(rates.rays) / static_cast<double>(rates.samples);
+  Value raysInFrame = Value::rate(rates.loop).times(kFrameSeconds);
+  Value samplesInFrame = raysInFrame.times(1 / raysPerSample);
+  samplesInFrame.unit = raysInFrame.unit = "1/50 ms";
+  Record record;
+  record.key = "rays/" + stage.name;
+  record.labels = {{"scene", stage.name}};
+  record.values = {{"loop", Value::rate(rates.loop)},
+                   {"bare", Value::rate(rates.bare)},
+                   {"ratio", Value::ratio(ratios(rates.loop, rates.bare), Better::higher)},
+                   {"samples_in_50ms", samplesInFrame},
+                   {"rays_in_50ms", raysInFrame},
+                   {"rays_per_sample", Value::count(raysPerSample, Better::lower)},
+                   {"samples", Value::count(static_cast<double>(rates.samples))},
+                   {"triangles", Value::count(static_cast<double>(stage.workspace->scene.triangleCount()))}};
+  return record;
 }
 
 }  // namespace
-}  // namespace saccade::bench
 
-int main(int argc, char** argv) { return saccade::bench::run(argc, argv); }
+void measureRays(Session& session) {
+  std::vector<std::string> scenes = session.options().scenes;
+  if (scenes.empty()) scenes = {bundledScene("gallery"), bundledScene("cornell"), bundledScene("table")};
+  for (const std::string& file : scenes) {
+    session.say("rays: " + sceneName(file));
+    const auto stage = openStage(file, "preview", session.options().seed, session.stop());
+    const Pinned main(mainCores());
+    const core::FramePtr frame = stage->gl->renderer->render(
+        stage->view(stage->workspace->scene.cameras[0], kSize), 1, app::CorrectiveOptions{}.nMin);
+    const LoadWatch watch;
+    const Rates rates = alternateLoops(*stage, frame, session.stop());
+    session.add(recordOf(*stage, rates), &watch);
+  }
+}
+
+}  // namespace saccade::bench
