@@ -35,7 +35,7 @@ class Value:
 
 @dataclass(frozen=True)
 class Run:
-    """One call of a program: where and how its records were made."""
+    """One call of a program: where and how its records were made; or `source`, a text that figures are quoted from."""
 
     commit: str
     command: str
@@ -45,6 +45,7 @@ class Run:
     dirty: bool = False
     other_load: float | None = None
     software: Mapping[str, str] = field(default_factory=dict)
+    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,8 @@ def _value(raw: Any) -> Value | None:
 
 def _run(raw: Mapping[str, Any]) -> Run:
     return Run(
-        commit=str(raw.get("commit", "unknown")),
+        source=str(raw.get("source") or ""),
+        commit=str(raw.get("commit") or ""),
         command=str(raw.get("command", "")),
         started=str(raw.get("started", "")),
         machine=machine_text(raw.get("machine", {})),

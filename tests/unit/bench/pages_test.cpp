@@ -1,4 +1,5 @@
-// The pages that Python makes of records: its own tests, run here so that the suite counts them.
+// The pages that Python makes of records: its own tests, run here so that the suite counts them, and
+// docs/results.md against the records.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -25,6 +26,17 @@ TEST(Pages, ReportOfAMeasurement) {
   std::string out;
   EXPECT_EQ(python("-m unittest tests/report/test_report.py", out), 0) << out;
   EXPECT_NE(out.find("\nRan "), std::string::npos) << out;
+}
+
+TEST(Pages, ResultsPageAndItsCheck) {
+  std::string out;
+  EXPECT_EQ(python("-m unittest tests/report/test_results.py", out), 0) << out;
+  EXPECT_NE(out.find("\nRan "), std::string::npos) << out;
+}
+
+TEST(Pages, ResultsAreWhatTheCommittedRecordsGive) {
+  std::string out;
+  EXPECT_EQ(python("bench/report/results.py --check", out), 0) << out;
 }
 
 }  // namespace
