@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "app/cli/options.h"
 #include "app/session/stats.h"
@@ -66,6 +67,11 @@ class FrameLoop {
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last step
   core::ImageRgb linear();                                       ///< base + correction of the last step
   const core::FrameSnapshot& frame() const { return *frame_; }
+  /// What the picture adds to the base: width * height; valid until the next step.
+  std::span<const core::Vec4> corrections() { return layer_.pixels(); }
+  /// Whether the next step with this camera goes on with the picture of the last one.
+  bool rests(const core::Camera& camera, ImageSize size) const { return !cameraChanged(camera, size); }
+  const raytrace::CorrectiveTracer& tracer() const { return tracer_; }
   const render::CorrectionLayer& layer() const { return layer_; }
   const render::SampleCache& cache() const { return cache_; }
   const attention::Analyzer& analyzer() const { return analyzer_; }

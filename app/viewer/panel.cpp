@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "app/viewer/error_plot.h"
+
 namespace saccade::app {
 
 void FrameTimes::add(float milliseconds) {
@@ -99,8 +101,8 @@ void drawKeys(PanelState& s, int height) {
 
 }  // namespace
 
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth,
-               int framebufferHeight) {
+void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times,
+               const LiveError::State& error, int framebufferWidth, int framebufferHeight) {
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(framebufferWidth - kPanelWidth), 0));
   ImGui::SetNextWindowSize(ImVec2(kPanelWidth, static_cast<float>(framebufferHeight)));
   ImGui::Begin("Saccade", nullptr,
@@ -117,6 +119,9 @@ void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times
   ImGui::SameLine();
   if (ImGui::Button("Keys (F1)")) state.showKeys = !state.showKeys;
   if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
+  ImGui::SetNextItemOpen(state.errorPlotOpen);
+  state.errorPlotOpen = ImGui::CollapsingHeader("Error against seconds at rest");
+  if (state.errorPlotOpen) drawErrorPlot(error, state.corrections);
   ImGui::PopItemWidth();
   ImGui::End();
   if (state.showKeys) drawKeys(state, framebufferHeight);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/session/frame_loop.h"
+#include "app/session/live_error.h"
 #include "app/session/overlays.h"
 
 namespace saccade::app {
@@ -22,6 +23,9 @@ struct PanelState {
   bool corrections = true;
   bool reuse = true;
   std::optional<Aov> overlay;
+  /// Error is measured only while its plot can be seen. Open at first: the work takes only time that nothing
+  /// else wants, and a curve that starts when it is asked for has lost its beginning.
+  bool errorPlotOpen = true;
   bool showKeys = false;
   bool screenshotWanted = false;
   std::string message;  ///< last thing done, such as the name of a screenshot
@@ -47,7 +51,7 @@ const std::vector<KeyHelp>& keyHelp();
 
 /// Between ImguiLayer::newFrame and render. The panel takes the right `kPanelWidth` pixels of the
 /// framebuffer.
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times, int framebufferWidth,
-               int framebufferHeight);
+void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times,
+               const LiveError::State& error, int framebufferWidth, int framebufferHeight);
 
 }  // namespace saccade::app

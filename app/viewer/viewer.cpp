@@ -13,6 +13,7 @@
 #include "app/cli/console.h"
 #include "app/session/camera_path.h"
 #include "app/session/headless.h"
+#include "app/session/live_error.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/walker.h"
 #include "core/image_io.h"
@@ -47,6 +48,7 @@ class Viewer {
                options.run.exposureEv, true}),
         home_(chooseCamera(workspace.scene, options.camera)),
         walker_(home_, workspace.scene.bounds.diagonal()) {
+    liveError_.emplace(tracedBy(loop_.tracer()));
     renderer_.setMaps(&workspace.maps);
     if (!options.path.empty()) path_ = CameraPath::read(options.path);
     if (options.orbit) path_ = CameraPath::orbit(home_, kOrbitPeriodSeconds);
@@ -83,13 +85,25 @@ class Viewer {
       std::this_thread::sleep_for(kMinimisedPause);
       return;
     }
+    observeRest(size);
     const double before = secondsSince(start);
     const double budget = std::max(1e-3, 1 / panel_.fps - before - presentSeconds_);
     loop_.step(walker_.camera(), size, FrameBudget::untilDeadline(std::chrono::duration<double>(budget)));
+    pictureSeconds_ = secondsSince(restStart_);
     const Clock::time_point shown = Clock::now();
     present(size);
     presentSeconds_ = 0.8 * presentSeconds_ + 0.2 * secondsSince(shown);
     times_.add(static_cast<float>(1000 * secondsSince(start)));
+  }
+
+  /// Before a step: what the last one left is a point of the curve once it is known that the camera stays. A
+  /// moving camera pays nothing.
+  void observeRest(ImageSize size) {
+    const bool rests = loop_.rests(walker_.camera(), size);
+    if (!rests) restStart_ = Clock::now();
+    if (!rests || !panel_.errorPlotOpen || !panel_.corrections) return liveError_->reset();
+    liveError_->observe(
+        {loop_.layer().frame(), loop_.corrections(), pictureSeconds_, loop_.converged(), panel_.exposureEv});
   }
 
   void present(ImageSize size) {
@@ -102,7 +116,7 @@ class Viewer {
     window_.bind();
     presenter_.present(*shown, {0, 0, size.width, size.height}, window_.width(), window_.height());
     imgui_.newFrame(window_.width(), window_.height());
-    drawPanel(panel_, loop_, times_, window_.width(), window_.height());
+    drawPanel(panel_, loop_, times_, liveError_->state(), window_.width(), window_.height());
     imgui_.render();
     if (closing_ && !options_.uiScreenshot.empty())
       core::writePng(options_.uiScreenshot, window_.screenshot());
@@ -208,6 +222,7 @@ class Viewer {
   render::BaseRenderer renderer_;
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
+  std::optional<LiveError> liveError_;  ///< above the loop: its idle thread ends once the tracers have
   FrameLoop loop_;
   core::Camera home_;
   Walker walker_;
@@ -218,6 +233,8 @@ class Viewer {
   bool closing_ = false;  ///< this frame is the last
   Clock::time_point start_ = Clock::now();
   double lastMove_ = 0;
+  Clock::time_point restStart_ = start_;  ///< the camera came here
+  double pictureSeconds_ = 0;             ///< from then to the end of the last step
   double presentSeconds_ = 0;  ///< running mean of what comes after the frame loop, kept free of its budget
 };
 

@@ -67,14 +67,24 @@ ImageRgb asFractions(const ImageRgba8& image) {
   return values;
 }
 
-}  // namespace
-
-Comparison compareLinear(const ImageRgb& reference, const ImageRgb& test) {
+/// The part of a comparison that needs no eye.
+Comparison linearErrors(const ImageRgb& reference, const ImageRgb& test) {
   checkSizes(reference, test);
   checkFinite(reference, "reference");
   checkFinite(test, "test");
   Comparison c;
   fillErrors(c, reference, test);
+  return c;
+}
+
+}  // namespace
+
+double relativeMse(const ImageRgb& reference, const ImageRgb& test) {
+  return linearErrors(reference, test).relmse;
+}
+
+Comparison compareLinear(const ImageRgb& reference, const ImageRgb& test) {
+  Comparison c = linearErrors(reference, test);
   fillPerceived(c, toDisplay(reference, 0), toDisplay(test, 0));
   return c;
 }

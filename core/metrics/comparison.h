@@ -25,6 +25,9 @@ struct Comparison {
 /// core::Error where the sizes differ, an image is empty, or a value is not finite.
 Comparison compareLinear(const ImageRgb& reference, const ImageRgb& test);
 
+/// Comparison::relmse alone. Throws as compareLinear.
+double relativeMse(const ImageRgb& reference, const ImageRgb& test);
+
 /// Errors of sRGB values in [0, 1]; alpha is ignored. Throws as compareLinear.
 Comparison compareDisplay(const ImageRgba8& reference, const ImageRgba8& test);
 

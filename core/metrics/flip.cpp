@@ -74,6 +74,12 @@ double hyAb(const glm::dvec3& a, const glm::dvec3& b) {
 /// One image in Y, Cx, Cz planes.
 using Planes = std::array<ImageGray, 3>;
 
+constexpr std::size_t kPollPixels = 1 << 14;  ///< between two looks at the stop flag: some milliseconds
+
+void poll(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Error("FLIP was stopped");
+}
+
 Planes opponentPlanes(const ImageRgba8& image) {
   std::array<double, 256> linear{};
   for (int code = 0; code < 256; ++code) linear[code] = decodeSrgb(static_cast<float>(code) / 255);
@@ -119,12 +125,15 @@ ImageGray filterBySensitivity(const ImageGray& plane, const Sensitivity& s, doub
 }
 
 /// What the eye sees of the colours: filtered, back in the gamut, in a perceptually uniform space.
-std::vector<glm::dvec3> perceivedColors(const Planes& planes, double ppd) {
+std::vector<glm::dvec3> perceivedColors(const Planes& planes, double ppd, const std::stop_token& stop) {
   const ImageGray y = filterBySensitivity(planes[0], kAchromatic, ppd);
+  poll(stop);
   const ImageGray cx = filterBySensitivity(planes[1], kRedGreen, ppd);
+  poll(stop);
   const ImageGray cz = filterBySensitivity(planes[2], kBlueYellow, ppd);
   std::vector<glm::dvec3> colors(y.pixels().size());
   for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (i % kPollPixels == 0) poll(stop);
     const glm::dvec3 rgb = rgbOfOpponent({y.pixels()[i], cx.pixels()[i], cz.pixels()[i]});
     colors[i] = huntLabOf(glm::clamp(rgb, 0.0, 1.0));
   }
@@ -179,17 +188,21 @@ ImageGray featureStrength(const ImageGray& achromatic, const std::vector<float>&
 }
 
 /// Differences of edge and point content, each pixel in [0, 1] (section 4.2).
-ImageGray featureDifference(ImageGray reference, ImageGray test, double ppd) {
+ImageGray featureDifference(ImageGray reference, ImageGray test, double ppd, const std::stop_token& stop) {
   for (ImageGray* plane : {&reference, &test}) {
     for (float& y : plane->pixels()) y = (y + 16) / 116;
   }
   const FeatureFilters filters(ppd);
   const ImageGray edgeR = featureStrength(reference, filters.edge, filters.smooth);
+  poll(stop);
   const ImageGray edgeT = featureStrength(test, filters.edge, filters.smooth);
+  poll(stop);
   const ImageGray pointR = featureStrength(reference, filters.point, filters.smooth);
+  poll(stop);
   const ImageGray pointT = featureStrength(test, filters.point, filters.smooth);
   ImageGray out(reference.width(), reference.height());
   for (std::size_t i = 0; i < out.pixels().size(); ++i) {
+    if (i % kPollPixels == 0) poll(stop);
     const float edge = std::abs(edgeR.pixels()[i] - edgeT.pixels()[i]);
     const float point = std::abs(pointR.pixels()[i] - pointT.pixels()[i]);
     const double larger = std::max(edge, point);
@@ -200,12 +213,14 @@ ImageGray featureDifference(ImageGray reference, ImageGray test, double ppd) {
 
 }  // namespace
 
-ImageGray flip(const ImageRgba8& reference, const ImageRgba8& test, double pixelsPerDegree) {
+ImageGray flip(const ImageRgba8& reference, const ImageRgba8& test, double pixelsPerDegree,
+               const std::stop_token& stop) {
   const Planes planesR = opponentPlanes(reference), planesT = opponentPlanes(test);
-  const auto colorsR = perceivedColors(planesR, pixelsPerDegree);
-  const auto colorsT = perceivedColors(planesT, pixelsPerDegree);
-  ImageGray map = featureDifference(planesR[0], planesT[0], pixelsPerDegree);
+  const auto colorsR = perceivedColors(planesR, pixelsPerDegree, stop);
+  const auto colorsT = perceivedColors(planesT, pixelsPerDegree, stop);
+  ImageGray map = featureDifference(planesR[0], planesT[0], pixelsPerDegree, stop);
   for (std::size_t i = 0; i < map.pixels().size(); ++i) {
+    if (i % kPollPixels == 0) poll(stop);
     const double color = std::clamp(redistribute(hyAb(colorsR[i], colorsT[i])), 0.0, 1.0);
     map.pixels()[i] = static_cast<float>(std::pow(color, 1 - double{map.pixels()[i]}));
   }

@@ -54,6 +54,7 @@ TEST(Comparison, ErrorsOfKnownDifferences) {
   const Comparison c = compareLinear(reference, test);
   EXPECT_DOUBLE_EQ(c.rmse, std::sqrt(4.0 / 6));
   EXPECT_DOUBLE_EQ(c.relmse, 4 / (1 + kRelativeEpsilon) / 6);
+  EXPECT_EQ(relativeMse(reference, test), c.relmse);
   EXPECT_DOUBLE_EQ(c.psnr, 10 * std::log10(6 / 4.0));
   EXPECT_DOUBLE_EQ(c.maxAbs, 2);
   // Both display as white.
@@ -111,6 +112,14 @@ TEST(Ssim, SymmetricBelowOneAndLowForUnrelatedNoise) {
   const ImageRgba8 a = noise(64, 64, 1), b = noise(64, 64, 2);
   EXPECT_DOUBLE_EQ(ssim(a, b), ssim(b, a));
   EXPECT_LT(std::abs(ssim(a, b)), 0.1);
+}
+
+TEST(Flip, AStopRequestEndsIt) {
+  std::stop_source stop;
+  const ImageRgba8 a = noise(40, 30, 1), b = noise(40, 30, 2);
+  EXPECT_EQ(flip(a, b, kFlipPixelsPerDegree, stop.get_token()).pixels(), flip(a, b).pixels());
+  stop.request_stop();
+  EXPECT_THROW(flip(a, b, kFlipPixelsPerDegree, stop.get_token()), Error);
 }
 
 TEST(Flip, SymmetricAndBounded) {
