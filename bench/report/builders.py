@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from typing import Sequence
+from typing import Callable, Sequence
 
 from blocks import (
     Block,
@@ -30,6 +30,9 @@ from records import Record
 # Variants of a method, and the value that stands for each while another one is varied.
 _USUAL = {"order": "attention", "cache": "on", "attention": "0.5"}
 
+# Where a record stands on the x axis, with the range of its repeats.
+Place = Callable[[Record], tuple[float, tuple[float, float] | None] | None]
+
 # Kinds of values, each with a panel of its own, and the word on its axis.
 _KINDS = {"time": "time", "bytes": "memory", "rate": "rate", "error": "error", "ratio": "ratio", "count": "count"}
 
@@ -39,33 +42,37 @@ def _stem(*words: str) -> str:
 
 
 def _cost(record: Record) -> tuple[float, tuple[float, float] | None] | None:
-    """Seconds that were spent, measured where they were, else granted; budgets stay milliseconds."""
+    """What was spent: a frame's budget (ms), seconds as measured, or else as granted; None where nothing says."""
+    if "budget_ms" in record.at:
+        return record.at["budget_ms"], None
     measured = record.values.get("seconds")
-    if measured and "budget_ms" not in record.at:
+    if measured:
         return measured.median, (measured.min, measured.max)
-    for name in ("seconds", "budget_ms", "x"):
-        if name in record.at:
-            return record.at[name], None
+    return (record.at["seconds"], None) if "seconds" in record.at else None
+
+
+def _amount(record: Record) -> tuple[float, None] | None:
+    """The quantity that grows: the only number that says where the record was taken."""
     return (next(iter(record.at.values())), None) if record.at else None
 
 
-def point(record: Record, metric: str) -> Point | None:
+def point(record: Record, metric: str, place: Place = _cost) -> Point | None:
     """A record as a point of a plot of `metric`; None when it has no such value or no place on the x axis."""
-    value, cost = record.values.get(metric), _cost(record)
-    if value is None or cost is None:
+    value, x = record.values.get(metric), place(record)
+    if value is None or x is None:
         return None
     factor = 1e-6 if value.kind == "bytes" else 1.0  # MB, as _unit says
-    return Point(cost[0], value.median * factor, (value.min * factor, value.max * factor), cost[1], record.loaded)
+    return Point(x[0], value.median * factor, (value.min * factor, value.max * factor), x[1], record.loaded)
 
 
-def curves(records: Sequence[Record], names: Sequence[str], metric: str) -> list[Curve]:
+def curves(records: Sequence[Record], names: Sequence[str], metric: str, place: Place = _cost) -> list[Curve]:
     """One curve for each combination of the labels `names`."""
     found: dict[str, Curve] = {}
     for record in records:
-        place = point(record, metric)
-        if place:
+        where = point(record, metric, place)
+        if where:
             name = variant_name(record, names) or record.experiment
-            found.setdefault(name, Curve(name)).points.append(place)
+            found.setdefault(name, Curve(name)).points.append(where)
     return sorted(found.values(), key=lambda curve: natural(curve.name))
 
 
@@ -95,12 +102,22 @@ def questions(records: Sequence[Record]) -> list[tuple[str, list[Record], list[s
     return found
 
 
-def _floor(context: Context, scene: str, metric: str) -> list[Line]:
-    for record in context.everything:
-        value = record.median(metric)
-        if record.experiment == "reference" and record.labels.get("scene", "") == scene and value:
-            return [Line("the reference's own error", value)]
-    return []
+def _is_reference(record: Record) -> bool:
+    return record.experiment == "reference" or record.labels.get("method") == "reference"
+
+
+def floor(context: Context, records: Sequence[Record], metric: str) -> list[Line]:
+    """The error of what the records were measured against: of a reference of the same experiment, else of the scene's."""
+    of_scene = [r for r in context.everything if r.labels.get("scene", "") == records[0].labels.get("scene", "")]
+    references = [record for record in of_scene if _is_reference(record) and record.median(metric)]
+    references.sort(key=lambda record: record.experiment != records[0].experiment)
+    return [Line("the reference's own error", references[0].median(metric) or 0.0)] if references else []
+
+
+def _exact_motion(records: Sequence[Record], metric: str) -> list[Curve]:
+    """What moves from frame to frame though nothing is wrong, where the records know it (METRIC_raytrace)."""
+    found = {p.x: p for p in (point(record, f"{metric}_raytrace") for record in records) if p}
+    return [Curve("exact frames", list(found.values()))] if found else []
 
 
 def error_against_cost(
@@ -110,37 +127,49 @@ def error_against_cost(
     found: list[Block] = []
     for scene, group in by_label(context.records, "scene").items():
         for path, records in by_label(group, "path").items():
-            found += _error_figures(context, records, (scene, path), metrics, x_label, timing)
-            names = [name for name in varying(records) if name not in ("scene", "path")]
-            ordered = sorted(
-                records, key=lambda record: (natural(variant_name(record, names)), sum(record.at.values()))
-            )
             place = ", ".join(filter(None, (scene, path)))
-            found.append(record_table(ordered, f"{place}: all numbers, median and range", names or ["method"]))
-            found += galleries(context, ordered, f"{place}: pictures")
+            main = [r for r in records if not _is_reference(r) and _cost(r) and any(m in r.values for m in metrics)]
+            if main:
+                found += _error_figures(context, main, place, metrics, x_label, timing)
+                found += _numbers_and_pictures(context, main, place)
+            found += _other_tables([record for record in records if record not in main], place)
     return found
 
 
+def _numbers_and_pictures(context: Context, records: Sequence[Record], place: str) -> list[Block]:
+    names = [name for name in varying(records) if name not in ("scene", "path")] or ["method"]
+    ordered = sorted(records, key=lambda record: (natural(variant_name(record, names)), sum(record.at.values())))
+    table = record_table(ordered, f"{place}: all numbers, median and range", names)
+    return [table, *galleries(context, ordered, f"{place}: pictures")]
+
+
+def _other_tables(records: Sequence[Record], place: str) -> list[Block]:
+    """What is no point of a curve, a table for each set of metrics."""
+    families: dict[tuple[str, ...], list[Record]] = {}
+    for record in records:
+        if record.values:
+            families.setdefault(tuple(metrics_of([record])), []).append(record)
+    caption = f"{place}: further figures".lstrip(": ")
+    return [record_table(group, caption) for group in families.values()]
+
+
 def _error_figures(
-    context: Context,
-    records: Sequence[Record],
-    place: tuple[str, str],
-    metrics: Sequence[str],
-    x_label: str,
-    timing: Sequence[str],
+    context: Context, records: Sequence[Record], place: str, metrics: Sequence[str], x_label: str, timing: Sequence[str]
 ) -> list[Block]:
     """The plots of one scene and path, one a question."""
     found: list[Block] = []
-    name, words = records[0].experiment, ", ".join(filter(None, place))
+    name = records[0].experiment
     for title, chosen, names in questions(records):
-        panels = [
-            Panel(hint(chosen, [m]), x_label, axis_label(m), curves(chosen, names, m), _floor(context, place[0], m))
-            for m in metrics
-        ]
-        found += _plot(context, _stem(name, *place, title), f"{words}: {title}", panels)
+        panels = []
+        for metric in metrics:
+            shown = curves(chosen, names, metric) + _exact_motion(chosen, metric)
+            panels.append(
+                Panel(hint(chosen, [metric]), x_label, axis_label(metric), shown, floor(context, chosen, metric))
+            )
+        found += _plot(context, _stem(name, place, title), f"{place}: {title}", panels)
         if timing and title == "methods":
             panels = _timing_panels(chosen, names, timing, x_label)
-            found += _plot(context, _stem(name, *place, "times"), f"{words}: what a frame costs", panels)
+            found += _plot(context, _stem(name, place, "times"), f"{place}: what a frame costs", panels)
     return found
 
 
@@ -150,7 +179,7 @@ def _timing_panels(
     panels = []
     for metric in metrics:
         diagonal = "the budget itself" if metric.startswith("frame_") else ""
-        log_y = metric != "missed"
+        log_y = not metric.startswith("missed")
         unit = _unit(records, metric)
         panels.append(
             Panel(
@@ -210,7 +239,7 @@ def _kind_panels(records: Sequence[Record], names: Sequence[str], kind: str, x_l
     for unit, metrics in units.items():
         found = []
         for metric in metrics:
-            for curve in curves(records, names, metric):
+            for curve in curves(records, names, metric, _amount):
                 plain = curve.name == records[0].experiment
                 curve.name = metric_name(metric) if plain else f"{metric_name(metric)}, {curve.name}"
                 found.append(curve)

@@ -130,7 +130,7 @@ def draw(folder: Path, stem: str, title: str, panels: list[Panel]) -> Plot | Non
         return None
     names = list(dict.fromkeys(curve.name for panel in panels for curve in panel.curves))
     looks = styles(names)
-    columns = min(_PANELS_A_ROW, len(panels))
+    columns = 2 if len(panels) == 4 else min(_PANELS_A_ROW, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = pyplot.subplots(
         rows, columns, figsize=(PANEL_WIDTH * columns, PANEL_HEIGHT * rows + 0.8), squeeze=False

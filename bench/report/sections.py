@@ -24,7 +24,7 @@ class Section:
 
 _ERRORS = ("relmse", "flip", "flip_salient")
 _MOVING = ("flip", "flip_salient", "flip_step", "relmse")
-_TIMES = ("frame_p95", "missed", "samples_per_s", "rays_per_s", "peak_bytes")
+_TIMES = ("frame_p95", "missed_share", "samples_per_second", "rays_per_second", "peak_bytes")
 _GROWTH = {
     "triangles": "triangles in the scene",
     "samples": "cached samples",
@@ -77,7 +77,9 @@ SECTIONS: dict[str, Section] = {
         "Converged against path-traced", "How far is the converged picture from the path-traced one, and why?", plain
     ),
     "many-lights": Section(
-        "Many lamps", "What does a light sample cost, and how noisy is it, among many lamps?", plain
+        "Many lamps",
+        "What does a light sample cost, and how noisy is it, among many lamps?",
+        partial(growth, x_units={"": "lamps"}),
     ),
     "load": Section(
         "From file to first frame", "Seconds and bytes until the first picture, beside a bare parse of the file.", plain

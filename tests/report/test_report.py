@@ -12,6 +12,7 @@ import xml.dom.minidom
 from pathlib import Path
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2] / "bench" / "report"), str(Path(__file__).resolve().parent)]
+import blocks  # noqa: E402
 import builders  # noqa: E402
 import records  # noqa: E402
 import report  # noqa: E402
@@ -94,6 +95,16 @@ class WholePage(unittest.TestCase):
         self.assertIn(f"{loaded} of {len(self.records)} records are marked", self.page.text)
         value = next(record for record in self.records if record.loaded).values["frame_p95"]
         self.assertIn(records.value_text(value) + "†", self.page.text)
+
+    def test_a_floor_comes_from_the_experiments_own_reference_or_the_scenes(self) -> None:
+        context = blocks.Context(self.folder, self.records, self.records)
+        for experiment, metric, error in (("still", "relmse", 0.0012), ("moving", "flip", 0.011)):
+            own = [record for record in self.records if record.experiment == experiment]
+            self.assertEqual([line.y for line in builders.floor(context, own, metric)], [error])
+
+    def test_what_is_no_point_of_a_curve_keeps_its_table(self) -> None:
+        self.assertIn("flip over base", self.page.text)
+        self.assertIn("gallery, walk: further figures", self.page.text)
 
     def test_head_names_machine_commit_seed_and_command(self) -> None:
         for words in ("Some Processor, 2 cores, 8 GiB", "abc1234", "saccade bench quick -o out", "embree 3.13.5"):
