@@ -3,11 +3,20 @@
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
 #include "bench/rays/rays.h"
+#include "bench/still/still.h"
 
 namespace saccade::bench {
 
 const std::vector<Experiment>& allExperiments() {
   static const std::vector<Experiment> experiments{
+      {"reference",
+       "How good are the references of the still views themselves?",
+       {Suite::quick, Suite::paper},
+       &runReferences},
+      {"still",
+       "A still view: error against seconds of every method",
+       {Suite::quick, Suite::paper},
+       &runStill},
       {"rays",
        "How much of bare Embree's speed is left in the corrective loop?",
        {Suite::quick},

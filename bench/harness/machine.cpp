@@ -16,6 +16,8 @@
 #include <sstream>
 #include <thread>
 
+#include "app/session/stats.h"
+
 namespace saccade::bench {
 namespace {
 
@@ -103,6 +105,12 @@ RunInfo describeRun(const std::string& command, std::uint32_t seed) {
                   {"compiler", "g++ " __VERSION__}};
   return run;
 }
+
+PeakMemory::PeakMemory() {
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the peak resident set size
+}
+
+std::uint64_t PeakMemory::bytes() const { return app::peakBytes(); }
 
 LoadWatch::LoadWatch() : start_(now()) {}
 

@@ -35,6 +35,14 @@ class LoadWatch {
   std::optional<Ticks> start_;
 };
 
+/// The most memory that was resident since construction: scene, maps and all else that stays included. Where
+/// the kernel does not let the peak be forgotten, the process's. One at a time.
+class PeakMemory {
+ public:
+  PeakMemory();
+  std::uint64_t bytes() const;
+};
+
 /// Keeps the calling thread, and threads it starts meanwhile, on some cores; gives the old ones back at the
 /// end. Numbers count the cores that the process may use, from 0.
 class Pinned {

@@ -40,8 +40,9 @@ std::unique_ptr<app::FrameLoop> pinnedLoop(const Stage& stage, app::FrameLoopOpt
 
 /// One picture of a still view and what it took.
 struct Point {
-  std::string setting;  ///< what was turned to get here: "125 ms", "16 spp"
+  std::string setting;  ///< what was turned to get here: "125 ms", "16 spp"; unique within the method
   double budgetMs = 0;  ///< the time it was given; 0 = it took what it took
+  int subSamples = 0;   ///< a pixel, where that is what was turned; else 0
   double seconds = 0;   ///< wall time from nothing (scene, maps and GL ready) to this picture
   core::ImageRgb linear;
   std::uint64_t samples = 0, rays = 0;

@@ -34,8 +34,10 @@ struct ReferenceView {
 
 /// How good it has to be.
 struct Confidence {
-  double relmse = 1e-3;     ///< estimated relative MSE (core/metrics) of the reference itself
-  double capSeconds = 100;  ///< computing time over all runs together; after it the reference stays as it is
+  double relmse = 1e-3;  ///< estimated relative MSE (core/metrics) of the reference itself
+  /// Computing time over all runs together, after which the reference stays as it is: processor time over the
+  /// threads, so that a busy machine does not make it worse.
+  double capSeconds = 100;
 };
 
 struct Reference {
@@ -48,7 +50,7 @@ struct Reference {
   /// SSIM and FLIP are those of a picture that is off by as much, but noisier than the true one.
   core::Comparison own;
   std::uint64_t samplesPerPixel = 0;
-  double seconds = 0;    ///< of computing, over all runs
+  double seconds = 0;    ///< of computing, as Confidence::capSeconds counts them
   bool reached = false;  ///< the confidence that was asked for
 };
 

@@ -16,7 +16,7 @@ namespace saccade::bench {
 struct ReferenceSums {
   int width = 0, height = 0;
   std::uint64_t samplesPerHalf = 0;  ///< a pixel
-  double seconds = 0;                ///< spent on computing, over all runs
+  double seconds = 0;                ///< of processor time over the threads, over all runs
   std::array<std::vector<glm::dvec3>, 2> halves;
 
   ReferenceSums() = default;
