@@ -7,23 +7,23 @@ from pathlib import Path
 from typing import Iterable, Sequence
 
 from plots import Plot
-from records import LOAD_MATTERS, Record, number_text, value_text
+from records import LOAD_MATTERS, Record, value_text
 
 # Metric: how it is called, in the order of columns.
 METRICS: dict[str, str] = {
     "relmse": "relative MSE",
     "rmse": "RMSE",
-    "psnr": "PSNR (dB)",
+    "psnr": "PSNR",
     "ssim": "SSIM",
     "flip": "FLIP, mean",
     "flip_median": "FLIP, median",
     "flip_p95": "FLIP, 95th percentile",
     "flip_salient": "FLIP weighted by saliency",
     "flip_step": "FLIP from frame to frame",
-    "seconds": "time (s)",
-    "frame_p50": "frame time, median (ms)",
-    "frame_p95": "frame time, 95th percentile (ms)",
-    "frame_p99": "frame time, 99th percentile (ms)",
+    "seconds": "time",
+    "frame_p50": "frame time, median",
+    "frame_p95": "frame time, 95th percentile",
+    "frame_p99": "frame time, 99th percentile",
     "missed_share": "share of missed deadlines",
     "samples_per_s": "samples a second",
     "samples_per_second": "samples a second",
@@ -40,6 +40,9 @@ METRICS: dict[str, str] = {
 }
 
 _PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".svg")
+_LABEL_ORDER = ("number", "scene", "path", "renderer", "method", "order", "cache", "attention")
+# What stands under a picture; a record without any of these shows all it has.
+_PICTURE_METRICS = ("relmse", "psnr", "flip", "flip_salient", "seconds", "frame_p95")
 _TABLE_OPEN_ROWS = 16  # a longer table starts folded
 LOADED_MARK = "†"
 
@@ -106,7 +109,7 @@ def metric_name(metric: str) -> str:
 def axis_label(metric: str, unit: str = "") -> str:
     """A metric as the title of an axis."""
     name = metric_name(metric)
-    return f"{name} ({unit})" if unit and "(" not in name else name
+    return name if not unit or (unit == "1/s" and "second" in name) else f"{name} ({unit})"
 
 
 def hint(records: Iterable[Record], metrics: Sequence[str]) -> str:
@@ -128,10 +131,11 @@ def natural(text: str) -> tuple[tuple[int, float, str], ...]:
     return tuple(parts)
 
 
-def varying(records: Iterable[Record], names: Sequence[str] | None = None) -> list[str]:
-    """Labels that differ among the records (a missing one counts), in the order of their first use."""
+def varying(records: Iterable[Record]) -> list[str]:
+    """Labels that differ among the records (a missing one counts): what is general first."""
     records = list(records)
-    seen = list(dict.fromkeys(name for record in records for name in record.labels)) if names is None else names
+    seen = list(dict.fromkeys(name for record in records for name in record.labels))
+    seen.sort(key=lambda name: _LABEL_ORDER.index(name) if name in _LABEL_ORDER else len(_LABEL_ORDER))
     return [name for name in seen if len({record.labels.get(name) for record in records}) > 1]
 
 
@@ -147,7 +151,7 @@ def variant_name(record: Record, names: Sequence[str]) -> str:
 
 def at_text(record: Record) -> str:
     names = {"budget_ms": "ms", "seconds": "s", "x": "", "samples": "samples", "spp": "spp"}
-    return ", ".join(f"{number_text(x)} {names.get(name, name)}".strip() for name, x in record.at.items())
+    return ", ".join(f"{x:,.10g} {names.get(name, name)}".strip() for name, x in record.at.items())
 
 
 def by_label(records: Iterable[Record], name: str) -> dict[str, list[Record]]:
@@ -221,7 +225,8 @@ def gallery_row(context: Context, record: Record, title: str) -> GalleryRow | No
     pictures = [(role, path) for role, path in shown if path and is_picture(context.folder, path)]
     if not any(role != "reference" for role, _ in pictures):
         return None
-    numbers = [f"{metric_name(metric)} {value_cell(record, metric).text}" for metric in metrics_of([record])]
+    metrics = [metric for metric in _PICTURE_METRICS if metric in record.values] or metrics_of([record])
+    numbers = [f"{metric_name(metric)} {value_cell(record, metric).text}" for metric in metrics]
     return GalleryRow(title, pictures, " · ".join(numbers), record.loaded)
 
 

@@ -29,6 +29,15 @@ _DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 # What occurs in several figures looks the same in all: name -> place in palette and markers.
 _KNOWN = {"corrective": 0, "path": 1, "raytrace": 2, "base": 7, "Cycles": 5}
 
+_LOADED_RING = {
+    "marker": "o",
+    "linestyle": "",
+    "color": "none",
+    "markeredgecolor": "#B00000",
+    "markersize": 9,
+    "markeredgewidth": 0.7,
+}
+
 PANEL_WIDTH, PANEL_HEIGHT = 4.4, 3.6  # inches
 _PANELS_A_ROW = 3
 _PNG_DPI = 110
@@ -216,9 +225,7 @@ def _draw_panel(axes: Axes, panel: Panel, looks: dict[str, dict[str, object]]) -
             **looks[curve.name],
         )
         loaded = [p for p in curve.points if p.loaded]
-        axes.plot(
-            [p.x for p in loaded], [p.y for p in loaded], "o", color="none", markeredgecolor="#B00000", markersize=12
-        )
+        axes.plot([p.x for p in loaded], [p.y for p in loaded], **_LOADED_RING)
     if panel.log_x:
         axes.set_xscale("log")
     if panel.log_y:
