@@ -58,12 +58,14 @@ class Row:
         self._book, self._record = book, record
 
     def __call__(self, metric: str, how: str = "", absent: str | None = None) -> str:
-        if metric not in self._record.values and absent is not None:
-            return absent
-        return self._book.figure(f"{self._record.key}:{metric}", how)
+        return self._book.figure(f"{self._record.key}:{metric}", how, absent)
 
     def has(self, metric: str) -> bool:
         return metric in self._record.values
+
+    def label(self, name: str) -> str:
+        """A label or a place that not every record has: nothing where it is absent."""
+        return getattr(self, name, "")
 
     @property
     def note(self) -> str:
@@ -105,7 +107,11 @@ class Book:
             raise RecordError(f"the record {key} has no metric {metric}; it has {', '.join(record.values)}")
         return record, record.values[metric]
 
-    def figure(self, name: str, how: str = "") -> str:
+    def figure(self, name: str, how: str = "", absent: str | None = None) -> str:
+        """The value of "key:metric" in the form `how`; `absent` instead where there is none, if it is given."""
+        key, _, metric = name.rpartition(":")
+        if absent is not None and not (key in self.records and metric in self.records[key].values):
+            return absent
         record, value = self.find(name)
         mark = LOADED_MARK if record.loaded and value.kind in LOAD_MATTERS else ""
         return self.marked(record, formatted(value, how) + mark)
@@ -121,6 +127,14 @@ class Book:
             if record.experiment == experiment and all(record.labels.get(n) == v for n, v in labels.items())
         ]
 
+    def labels(self, experiment: str, name: str) -> list[str]:
+        """The values that a label has in an experiment, in the files' order."""
+        return list(dict.fromkeys(r.labels[name] for r in self.select(experiment) if name in r.labels))
+
+    def places(self, experiment: str, name: str, **labels: str) -> list[str]:
+        """Where (`at`) an experiment was measured, in rising order."""
+        return [f"{x:g}" for x in sorted({r.at[name] for r in self.select(experiment, **labels) if name in r.at})]
+
     def has(self, pattern: str) -> bool:
         """Whether a record's key matches the shell pattern."""
         return any(fnmatch.fnmatchcase(key, pattern) for key in self.records)
@@ -132,6 +146,16 @@ class Book:
             raise RecordError(f"{theirs} is zero, a ratio to it says nothing")
         quotient = value.median / divisor.median
         return self.marked(other, self.marked(record, formatted(Value(quotient, quotient, quotient), how)))
+
+    def after(self, seconds: float, experiment: str, metric: str, how: str = "", **labels: str) -> str:
+        """What a method has after so many seconds: the figure of its longest measurement that took no longer."""
+        found = [
+            (record.values["seconds"].median, record.key)
+            for record in self.select(experiment, **labels)
+            if metric in record.values and "seconds" in record.values
+        ]
+        in_time = [pair for pair in found if pair[0] <= seconds]
+        return self.figure(f"{max(in_time)[1]}:{metric}", how) if in_time else "–"
 
     def goals(self) -> list[dict[str, str]]:
         """What the plan or a paper asks for beside what we have; see Goal."""
@@ -165,7 +189,8 @@ class Book:
 
 class Goal:
     """A record of experiment "goal": labels `what`, `of` (pattern "key:metric"), optionally `format`; a value `least`
-    or `most`; the note is the cause where it is missed. Several records that match are judged by the worst."""
+    or `most`; the note is the cause where it is missed. Of several records that match the worst is judged, or the best
+    where the label `judge` says so."""
 
     def __init__(self, book: Book, record: Record) -> None:
         self._book, self._record = book, record
@@ -210,7 +235,8 @@ class Goal:
             for key, record in self._book.records.items()
             if fnmatch.fnmatchcase(key, pattern) and metric in record.values
         ]
-        return sorted(found, key=lambda pair: pair[1].median, reverse=self._side == "most")
+        best = self._record.labels.get("judge") == "best"
+        return sorted(found, key=lambda pair: pair[1].median, reverse=(self._side == "most") != best)
 
 
 def with_sources(text: str, book: Book) -> str:
@@ -259,7 +285,14 @@ def render(template: Path, book: Book) -> str:
     environment = jinja2.Environment(
         trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, autoescape=False
     )
-    names: dict[str, Any] = {"figure": book.figure, "rows": book.rows, "has": book.has, "ratio": book.ratio}
+    names: dict[str, Any] = {
+        "figure": book.figure,
+        "rows": book.rows,
+        "has": book.has,
+        "ratio": book.ratio,
+        "after": book.after,
+    }
+    names |= {"labels": book.labels, "places": book.places}
     names |= {"goals": book.goals, "machines": book.machine_list}
     try:
         return with_sources(environment.from_string(text).render(names), book)

@@ -55,7 +55,7 @@ SECTIONS: dict[str, Section] = {
         partial(
             ratio_rows,
             metric="ratio",
-            x_label="ours / the paper's",
+            x_label="ours / the paper's (↓ lower is better, ↑ higher is better)",
             mark="as the paper's",
             caption="Ours over the paper's",
         ),

@@ -145,6 +145,12 @@ class Results(unittest.TestCase):
         self.write(TEMPLATE, [rays("gallery", 0.42), rays("cornell", 0.51), goal(0.42)])
         self.assertIn("| ratio | 0.42 (gallery) | ≥ 0.42 | met  |", self.text())
 
+    def test_a_goal_may_be_judged_by_the_best_record(self) -> None:
+        chosen = goal(0.5)
+        chosen["labels"]["judge"] = "best"
+        self.write(TEMPLATE, [rays("gallery", 0.42), rays("cornell", 0.51), chosen])
+        self.assertIn("| ratio | 0.51 (cornell) | ≥ 0.50 | met  |", self.text())
+
     def test_a_missed_goal_needs_a_cause(self) -> None:
         self.write(TEMPLATE, [rays("gallery", 0.42), goal(0.5, note="")])
         self.refused("rays/gallery misses the goal goal/rays; write the cause")
@@ -152,6 +158,21 @@ class Results(unittest.TestCase):
     def test_a_goal_without_measurement_says_so(self) -> None:
         self.write(TEMPLATE.replace("{{rays/gallery:loop|.2f M}}", "some"), [goal(0.5)])
         self.assertIn("| ratio | – | ≥ 0.50 | not measured  |", self.text())
+
+    def test_what_a_method_has_after_some_seconds(self) -> None:
+        found = []
+        for seconds, flip in ((0.1, 0.3), (0.4, 0.2), (2.0, 0.1)):
+            values = {"seconds": synthetic.value(seconds, "time", "s"), "flip": synthetic.value(flip)}
+            found.append(synthetic.record(f"still/a/path@{seconds}", {"scene": "a"}, {}, values))
+        self.write('{{ after(0.05, "still", "flip") }} {{ after(0.5, "still", "flip", ".1f", scene="a") }}', found)
+        self.assertTrue(self.text().startswith("– 0.2\n"), self.text())
+
+    def test_what_may_be_absent(self) -> None:
+        self.write(
+            '{{ figure("a/b:c", "", "none") }}{% for row in rows("rays") %} {{ row("c", "", "–") }}{% endfor %}',
+            [rays("x", 1)],
+        )
+        self.assertEqual(self.text(), "none –\n")
 
     def test_two_records_of_one_key_are_refused(self) -> None:
         synthetic.write(self.records, [rays("gallery", 0.3)], "more.json")
