@@ -2,17 +2,16 @@
 #include "bench/methods/walkers.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <map>
 #include <set>
 
 #include "app/session/camera_path.h"
 #include "bench/harness/experiment.h"
 #include "core/image_io.h"
+#include "tests/unit/bench/inline_stage.h"
 
 namespace saccade::bench {
 namespace {
@@ -20,18 +19,7 @@ namespace {
 constexpr app::ImageSize kSize{128, 96};
 constexpr std::chrono::duration<double> kForever{1e6};
 
-/// cornell, everything inline.
-Stage& stage() {
-  static const std::unique_ptr<Stage> opened = [] {
-    auto stage = openStage(bundledScene("cornell"), "preview", 1, {});
-    stage->tracers = 0;
-    stage->cores = 2;
-    return stage;
-  }();
-  return *opened;
-}
-
-core::Camera firstCamera() { return stage().workspace->scene.cameras.at(0); }
+core::Camera firstCamera() { return inlineCornell().workspace->scene.cameras.at(0); }
 
 bool samePixels(const core::ImageRgb& a, const core::ImageRgb& b) {
   return a.width() == b.width() && a.height() == b.height() &&
@@ -40,28 +28,25 @@ bool samePixels(const core::ImageRgb& a, const core::ImageRgb& b) {
 
 /// What `saccade render` writes with these arguments.
 core::ImageRgb rendered(const std::string& arguments) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("saccade-walkers-" + std::to_string(::getpid()) + ".exr");
+  const std::string file = (stageFolder() / "rendered.exr").string();
   const std::string command = std::string(SACCADE_BINARY) + " render " + bundledScene("cornell") +
-                              " --size 128x96 --quality preview -o " + file.string() + " " + arguments +
+                              " --maps " + mapsOf("cornell") + " --size 128x96 -o " + file + " " + arguments +
                               " 2>/dev/null >/dev/null";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
-  core::ImageRgb image = core::readExr(file);
-  std::filesystem::remove(file);
-  return image;
+  return core::readExr(file);
 }
 
 std::unique_ptr<Walker> corrective(const attention::AttentionOptions& attention = {}, bool reuse = true) {
-  return walkCorrective(stage(), kSize, attention, reuse);
+  return walkCorrective(inlineCornell(), kSize, attention, reuse);
 }
 
 TEST(Walkers, ShowWhatTheCommandsShow) {
   const struct {
     std::unique_ptr<Walker> walker;
     const char* arguments;
-  } cases[] = {{walkBase(stage(), kSize), "--method base"},
-               {walkRaytrace(stage(), kSize), "--method raytrace"},
-               {walkPath(stage(), kSize), "--method path --spp 1"}};
+  } cases[] = {{walkBase(inlineCornell(), kSize), "--method base"},
+               {walkRaytrace(inlineCornell(), kSize), "--method raytrace"},
+               {walkPath(inlineCornell(), kSize), "--method path --spp 1"}};
   for (const auto& c : cases) {
     SCOPED_TRACE(c.arguments);
     c.walker->frame(firstCamera(), kForever);
@@ -71,7 +56,7 @@ TEST(Walkers, ShowWhatTheCommandsShow) {
 }
 
 TEST(Walkers, CorrectiveWithAllTheTimeItNeedsIsRaytrace) {
-  const auto raytrace = walkRaytrace(stage(), kSize), loop = corrective();
+  const auto raytrace = walkRaytrace(inlineCornell(), kSize), loop = corrective();
   raytrace->frame(firstCamera(), kForever);
   loop->frame(firstCamera(), kForever);
   EXPECT_GT(loop->stats().samplesTraced, 0u);
@@ -83,7 +68,7 @@ TEST(Walkers, CorrectiveWithAllTheTimeItNeedsIsRaytrace) {
 TEST(Walkers, AFrameKnowsNothingOfThoseBeforeItWhereItShouldNot) {
   const app::CameraPath path = app::CameraPath::read(bundledPath("cornell"));
   for (const auto walk : {walkBase, walkRaytrace, walkPath}) {
-    const auto moved = walk(stage(), kSize), fresh = walk(stage(), kSize);
+    const auto moved = walk(inlineCornell(), kSize), fresh = walk(inlineCornell(), kSize);
     moved->frame(path.at(1), kForever);
     moved->frame(path.at(2), kForever);
     fresh->frame(path.at(2), kForever);
@@ -110,31 +95,18 @@ core::ImageRgb walked(const Method& method, Stage& stage, const app::CameraPath&
   return walker->linear();
 }
 
-/// Orders do not depend on the maps' quality; baking is what takes time.
-std::unique_ptr<Stage> galleryWithPoorMaps() {
-  auto stage = std::make_unique<Stage>();
-  app::SceneOptions scene;
-  scene.path = bundledScene("gallery");
-  scene.quality = "preview";
-  scene.photons = 10000;
-  stage->tracers = 0;
-  stage->workspace = app::openWorkspace(scene, {.threads = 2}, {});
-  stage->gl = std::make_unique<app::Headless>(app::RunOptions{}, *stage->workspace);
-  return stage;
-}
-
 TEST(Methods, EveryOneWalksAndInlineTheSameTwice) {
   const app::CameraPath path = app::CameraPath::read(bundledPath("cornell"));
   for (const Method& method : allMethods()) {
     SCOPED_TRACE(method.key());
     ASSERT_TRUE(method.walk);
-    EXPECT_TRUE(samePixels(walked(method, stage(), path), walked(method, stage(), path)));
+    EXPECT_TRUE(samePixels(walked(method, inlineCornell(), path), walked(method, inlineCornell(), path)));
   }
 }
 
 // The hall has objects enough for every order to be another one; its few in cornell are soon all done.
 TEST(Methods, OrdersAndWeightsTraceOtherSamplesInTheSameTime) {
-  const std::unique_ptr<Stage> hall = galleryWithPoorMaps();
+  const std::unique_ptr<Stage> hall = inlineStage("gallery");
   const app::CameraPath path = app::CameraPath::read(bundledPath("gallery"));
   std::map<std::string, core::ImageRgb> seen;
   for (const Method& method : allMethods()) {
