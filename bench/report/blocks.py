@@ -221,7 +221,8 @@ def reference_picture(record: Record, everything: Iterable[Record]) -> str:
 def gallery_row(context: Context, record: Record, title: str) -> GalleryRow | None:
     """Reference | method | error map, with the numbers; None when the record has no picture."""
     shown = [("reference", reference_picture(record, context.everything))]
-    shown += [("this method", record.files.get("picture", "")), ("FLIP map", record.files.get("error", ""))]
+    own = "this method" if "error" in record.files else "picture"
+    shown += [(own, record.files.get("picture", "")), ("FLIP map", record.files.get("error", ""))]
     shown += [(role, path) for role, path in record.files.items() if role not in ("picture", "error", "reference")]
     pictures = [(role, path) for role, path in shown if path and is_picture(context.folder, path)]
     if not any(role != "reference" for role, _ in pictures):
