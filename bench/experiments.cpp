@@ -3,6 +3,7 @@
 #include "bench/harness/experiment.h"
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
+#include "bench/moving/moving.h"
 #include "bench/peers/peers.h"
 #include "bench/rays/rays.h"
 #include "bench/still/still.h"
@@ -28,6 +29,10 @@ const std::vector<Experiment>& allExperiments() {
        "What does a light sample among many lamps cost, and how far off is it?",
        {Suite::quick},
        &measureManyLights},
+      {"moving",
+       "How good is the picture while the camera moves, at 8 to 125 ms a frame?",
+       {Suite::quick, Suite::paper},
+       &measureMoving},
       {"peers",
        "How soon is which renderer as near to the truth: Blender's Cycles, our path tracer, our corrections?",
        {},

@@ -230,11 +230,9 @@ core::ImageRgb FrameLoop::linear() {
 }
 
 void FrameLoop::finishStats(Clock::time_point start, const FrameBudget& budget) {
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  stats_.frameMs.push_back(1000 * seconds);
-  constexpr double kTimerSlack = 1e-3;
-  if (budget.kind == FrameBudget::Kind::deadline && seconds > budget.time.count() + kTimerSlack)
-    ++stats_.missedDeadlines;
+  const std::chrono::duration<double> taken = Clock::now() - start;
+  stats_.frameMs.push_back(1000 * taken.count());
+  if (budget.missedAfter(taken)) ++stats_.missedDeadlines;
   stats_.nonDiffusePixels = frame_->nonDiffusePixels;
   stats_.converged = layer_.converged();
   stats_.rays = pool_.rays();

@@ -37,6 +37,12 @@ struct FrameBudget {
   static FrameBudget untilDeadline(std::chrono::duration<double> t) { return {Kind::deadline, t, 0}; }
   static FrameBudget firstSamples(std::uint64_t n) { return {Kind::samples, {}, n}; }
   static FrameBudget untilConverged() { return {Kind::converge, {}, 0}; }
+
+  /// Whether a frame that took so long missed its deadline: by more than timers and scheduler are worth.
+  bool missedAfter(std::chrono::duration<double> taken) const {
+    constexpr std::chrono::duration<double> kTimerSlack{1e-3};
+    return kind == Kind::deadline && taken > time + kTimerSlack;
+  }
 };
 
 struct FrameLoopOptions {

@@ -2,6 +2,7 @@
 #include "attention/importance.h"
 #include "bench/harness/method.h"
 #include "bench/methods/stills.h"
+#include "bench/methods/walkers.h"
 
 namespace saccade::bench {
 namespace {
@@ -28,7 +29,7 @@ Method corrective(const NamedOrder& order, bool cache, const char* weight) {
       variant,
       {{"method", "corrective"}, {"order", name}, {"cache", cache ? "on" : "off"}, {"attention", weight}},
       nullptr,
-      nullptr};
+      [=](Stage& stage, app::ImageSize size) { return walkCorrective(stage, size, attention, cache); }};
   if (cache) {
     method.still = [=](Stage& stage, const StillTask& task, const TakePoint& take) {
       stillCorrective(stage, task, take, attention, usual);
@@ -46,13 +47,13 @@ std::vector<Method> allMethods() {
                                     {attention::Order::scanline, "scanline"},
                                     {attention::Order::largest, "largest"}};
   std::vector<Method> methods;
-  methods.push_back({"base", "", {{"method", "base"}}, stillBase, nullptr});
+  methods.push_back({"base", "", {{"method", "base"}}, stillBase, walkBase});
   for (const bool cache : {true, false}) {
     for (const char* weight : {"0", "0.5", "1"}) methods.push_back(corrective(kAttention, cache, weight));
     for (const NamedOrder& order : kOthers) methods.push_back(corrective(order, cache, "0.5"));
   }
-  methods.push_back({"raytrace", "", {{"method", "raytrace"}}, stillRaytrace, nullptr});
-  methods.push_back({"path", "", {{"method", "path"}}, stillPath, nullptr});
+  methods.push_back({"raytrace", "", {{"method", "raytrace"}}, stillRaytrace, walkRaytrace});
+  methods.push_back({"path", "", {{"method", "path"}}, stillPath, walkPath});
   return methods;
 }
 

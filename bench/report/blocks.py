@@ -40,6 +40,7 @@ METRICS: dict[str, str] = {
 }
 
 _PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".svg")
+_REMARKS = ("status", "result")  # labels that say how it went, not what was measured
 _LABEL_ORDER = ("number", "scene", "path", "renderer", "method", "order", "cache", "attention")
 # What stands under a picture; a record without any of these shows all it has.
 _PICTURE_METRICS = ("relmse", "psnr", "flip", "flip_salient", "seconds", "frame_p95")
@@ -143,7 +144,7 @@ def variant_name(record: Record, names: Sequence[str]) -> str:
     """A record's curve or row by the labels that matter: "corrective, order task"."""
     words = []
     for name in names:
-        if name in record.labels:
+        if name in record.labels and name not in _REMARKS:
             value = record.labels[name]
             words.append(value if name in ("method", "renderer", "what", "test", "scene") else f"{name} {value}")
     return ", ".join(words)
@@ -220,7 +221,8 @@ def reference_picture(record: Record, everything: Iterable[Record]) -> str:
 def gallery_row(context: Context, record: Record, title: str) -> GalleryRow | None:
     """Reference | method | error map, with the numbers; None when the record has no picture."""
     shown = [("reference", reference_picture(record, context.everything))]
-    shown += [("this method", record.files.get("picture", "")), ("FLIP map", record.files.get("error", ""))]
+    own = "this method" if "error" in record.files else "picture"
+    shown += [(own, record.files.get("picture", "")), ("FLIP map", record.files.get("error", ""))]
     shown += [(role, path) for role, path in record.files.items() if role not in ("picture", "error", "reference")]
     pictures = [(role, path) for role, path in shown if path and is_picture(context.folder, path)]
     if not any(role != "reference" for role, _ in pictures):

@@ -248,42 +248,37 @@ def _kind_panels(records: Sequence[Record], names: Sequence[str], kind: str, x_l
     return panels
 
 
+_HARD_LABELS = ("number", "title", "case", "test")
+_ARROWS = {"lower": " ↓", "higher": " ↑"}
+
+
 def ratio_rows(context: Context, metric: str, x_label: str, mark: str, caption: str) -> list[Block]:
     """A line for each record's ratio from the line at 1, and the table behind it."""
     names = varying(context.records) or list(context.records[0].labels)
-    heights = [
-        (variant_name(r, names) or r.key, r.values[metric].median) for r in context.records if metric in r.values
-    ]
-    plot = ratios(
-        context.folder, _stem(context.records[0].experiment, metric), caption, x_label, heights, Line(mark, 1.0)
-    )
+    shown = [(record, record.values[metric]) for record in context.records if metric in record.values]
+    found = [(variant_name(record, names) + _ARROWS.get(value.better, ""), value.median) for record, value in shown]
+    stem = _stem(context.records[0].experiment, metric)
+    plot = ratios(context.folder, stem, caption, x_label, found, Line(mark, 1.0))
     return ([PlotBlock(plot)] if plot else []) + [record_table(context.records, "All numbers, median and range")]
 
 
 def hard_cases(context: Context) -> list[Block]:
     """A table of every case with its share of what is allowed; shares above 1 are failures."""
-    rows, heights = [], []
+    rows, shares = [], []
     ordered = sorted(context.records, key=lambda record: natural(record.labels.get("number", "")))
     for record in ordered:
         achieved, allowed = record.median("achieved"), record.median("allowed")
         share = achieved / allowed if achieved is not None and allowed else None
-        failed = achieved is not None and allowed is not None and achieved > allowed
-        name = f"{record.labels.get('number', '')} {record.labels.get('case', record.key)}".strip()
+        failed = record.labels.get("result") == "failed" or (share is not None and share > 1)
         if share:
-            heights.append((name, share))
-        cells = [Cell(record.labels.get(label, "")) for label in ("number", "case", "test")]
+            shares.append((f"{record.labels.get('number', '')} {record.labels.get('case', record.key)}".strip(), share))
+        cells = [Cell(record.labels.get(label, "")) for label in _HARD_LABELS]
         cells += [value_cell(record, "achieved"), value_cell(record, "allowed")]
-        cells.append(Cell(f"{share:.2g}" if share is not None else "", number=True, bad=failed))
-        rows.append(cells)
-    plot = ratios(
-        context.folder,
-        "hard",
-        "Error as a share of what is allowed",
-        "achieved / allowed, lower is better",
-        heights,
-        Line("allowed", 1.0),
-    )
-    table = TableBlock("Every case", ["number", "case", "test", "achieved", "allowed", "share"], rows)
+        cells += [Cell("" if share is None else f"{share:.2g}", number=True, bad=failed)]
+        rows.append(cells + [Cell(record.labels.get("result", ""), bad=failed)])
+    title, x_label = "Error as a share of what is allowed", "achieved / allowed, lower is better"
+    plot = ratios(context.folder, "hard", title, x_label, shares, Line("allowed", 1.0))
+    table = TableBlock("Every case", [*_HARD_LABELS, "achieved", "allowed", "share", ""], rows)
     return ([PlotBlock(plot)] if plot else []) + [table] + galleries(context, ordered, "Pictures")
 
 

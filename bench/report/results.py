@@ -10,13 +10,15 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
+from book import Book
 from literal_numbers import literal_numbers
 from records import RecordError, load, read_raw
-from results_page import Book, committed, render
+from results_page import book_of, committed, plots_folder, render
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -41,7 +43,7 @@ def check(docs: Path) -> list[str]:
     template = docs / "results.md.in"
     wrong = literal_numbers(template)
     try:
-        text = render(template, Book(committed(docs / "records")))
+        text = render(template, book_of(docs))
     except RecordError as error:
         return [*wrong, str(error)]
     return wrong + difference(docs / "results.md", text)
@@ -71,8 +73,8 @@ def take(docs: Path, folder: Path) -> list[str]:
     """Replaces each experiment that DIR holds by those of its records that the page uses; returns their names."""
     new = {record.key: record for record in load(folder / "records.json")}
     experiments = {record.experiment for record in new.values()}
-    old = {key: record for key, record in committed(docs / "records").items() if record.experiment not in experiments}
-    book = Book(old | new)
+    old = {key: record for key, record in committed(docs).items() if record.experiment not in experiments}
+    book = Book(old | new, plots_folder(docs))
     render(docs / "results.md.in", book)
     used = experiments & {record.experiment for key, record in book.used.items() if key in new}
     for path in sorted((docs / "records").glob("*.json")):
@@ -85,7 +87,17 @@ def take(docs: Path, folder: Path) -> list[str]:
             if entry["key"] in book.used and new[entry["key"]].experiment == experiment
         ]
         write_records(docs / "records" / f"{experiment}.json", raw["runs"], entries)
+    take_plots(docs, folder, book.asked_plots)
     return sorted(used)
+
+
+def take_plots(docs: Path, folder: Path, names: list[str]) -> None:
+    """Copies the plots that the page shows, where the measurement has them."""
+    for name in names:
+        drawn = folder / "plots" / f"{name}.png"
+        if drawn.is_file():
+            plots_folder(docs).mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(drawn, plots_folder(docs) / drawn.name)
 
 
 def main() -> int:
@@ -107,9 +119,7 @@ def main() -> int:
         if options.take:
             print("taken over: " + (", ".join(take(options.docs, options.take)) or "nothing that the page shows"))
         page = options.docs / "results.md"
-        page.write_text(
-            render(options.docs / "results.md.in", Book(committed(options.docs / "records"))), encoding="utf-8"
-        )
+        page.write_text(render(options.docs / "results.md.in", book_of(options.docs)), encoding="utf-8")
         print(page)
     except (RecordError, OSError) as error:
         print(f"saccade: error: {error}", file=sys.stderr)

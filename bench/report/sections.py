@@ -55,10 +55,21 @@ SECTIONS: dict[str, Section] = {
         partial(
             ratio_rows,
             metric="ratio",
-            x_label="ours / the paper's",
+            x_label="ours / the paper's (↓ lower is better, ↑ higher is better)",
             mark="as the paper's",
             caption="Ours over the paper's",
         ),
+    ),
+    "figures": Section(
+        "Figures of the papers", "What our splats and reused samples look like beside the papers' own figures.", plain
+    ),
+    "untraced": Section(
+        "The frame without tracing",
+        "What do drawing, warping, splatting, read-back and composing cost beside the bare draw?",
+        plain,
+    ),
+    "gallery-walk": Section(
+        "The gallery walk", "Does the frame rate hold, and how many new samples does a frame get?", plain
     ),
     "growth": Section(
         "Growth",

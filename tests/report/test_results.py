@@ -14,7 +14,8 @@ import results  # noqa: E402
 import synthetic  # noqa: E402
 from literal_numbers import literal_numbers  # noqa: E402
 from records import RecordError, Value  # noqa: E402
-from results_page import Book, committed, formatted, render  # noqa: E402
+from book import formatted  # noqa: E402
+from results_page import book_of, committed, render  # noqa: E402
 
 TEMPLATE = """# Results 2026
 
@@ -59,7 +60,7 @@ class Results(unittest.TestCase):
         (self.docs / "results.md.in").write_text(template, encoding="utf-8")
 
     def text(self) -> str:
-        return render(self.docs / "results.md.in", Book(committed(self.records)))
+        return render(self.docs / "results.md.in", book_of(self.docs))
 
     def make(self) -> None:
         (self.docs / "results.md").write_text(self.text(), encoding="utf-8")
@@ -145,6 +146,12 @@ class Results(unittest.TestCase):
         self.write(TEMPLATE, [rays("gallery", 0.42), rays("cornell", 0.51), goal(0.42)])
         self.assertIn("| ratio | 0.42 (gallery) | ≥ 0.42 | met  |", self.text())
 
+    def test_a_goal_may_be_judged_by_the_best_record(self) -> None:
+        chosen = goal(0.5)
+        chosen["labels"]["judge"] = "best"
+        self.write(TEMPLATE, [rays("gallery", 0.42), rays("cornell", 0.51), chosen])
+        self.assertIn("| ratio | 0.51 (cornell) | ≥ 0.50 | met  |", self.text())
+
     def test_a_missed_goal_needs_a_cause(self) -> None:
         self.write(TEMPLATE, [rays("gallery", 0.42), goal(0.5, note="")])
         self.refused("rays/gallery misses the goal goal/rays; write the cause")
@@ -153,23 +160,48 @@ class Results(unittest.TestCase):
         self.write(TEMPLATE.replace("{{rays/gallery:loop|.2f M}}", "some"), [goal(0.5)])
         self.assertIn("| ratio | – | ≥ 0.50 | not measured  |", self.text())
 
+    def test_what_a_method_has_after_some_seconds(self) -> None:
+        found = []
+        for seconds, flip in ((0.1, 0.3), (0.4, 0.2), (2.0, 0.1)):
+            values = {"seconds": synthetic.value(seconds, "time", "s"), "flip": synthetic.value(flip)}
+            found.append(synthetic.record(f"still/a/path@{seconds}", {"scene": "a"}, {}, values))
+        self.write('{{ after(0.05, "still", "flip") }} {{ after(0.5, "still", "flip", ".1f", scene="a") }}', found)
+        self.assertTrue(self.text().startswith("– 0.2\n"), self.text())
+
+    def test_what_may_be_absent(self) -> None:
+        self.write(
+            '{{ figure("a/b:c", "", "none") }}{% for row in rows("rays") %} {{ row("c", "", "–") }}{% endfor %}',
+            [rays("x", 1)],
+        )
+        self.assertEqual(self.text(), "none –\n")
+
     def test_two_records_of_one_key_are_refused(self) -> None:
         synthetic.write(self.records, [rays("gallery", 0.3)], "more.json")
         with self.assertRaisesRegex(RecordError, "rays/gallery occurs twice"):
-            committed(self.records)
+            committed(self.docs)
 
     def test_taking_over_replaces_an_experiment_and_nothing_else(self) -> None:
         measured = self.docs / "out"
         unused = synthetic.record("still/cornell/path@1s", {"scene": "cornell"}, {}, {"flip": synthetic.value(0.5)})
         synthetic.write(measured, [rays("table", 0.61), rays("gallery", 0.55), unused])
         self.assertEqual(results.take(self.docs, measured), ["rays"])
-        kept = committed(self.records)
+        kept = committed(self.docs)
         self.assertEqual(set(kept), {"rays/table", "rays/gallery", "goal/rays"})
         self.assertEqual(kept["rays/gallery"].median("ratio"), 0.55)
         self.assertEqual(kept["rays/gallery"].run.command, synthetic.RUN["command"])
         json.loads((self.records / "rays.json").read_text(encoding="utf-8"))
         self.make()
         self.assertEqual(results.check(self.docs), [])
+
+    def test_plots_come_with_the_records(self) -> None:
+        self.write(TEMPLATE + '\n{{ plot("rays", "speed of rays") }}\n', [rays("gallery", 0.42), goal(0.4)])
+        self.assertNotIn("![", self.text())
+        measured = self.docs / "out"
+        synthetic.write(measured, [rays("gallery", 0.55)])
+        synthetic.png(measured / "plots" / "rays.png", 9)
+        results.take(self.docs, measured)
+        self.assertIn("\n![speed of rays](pictures/plots/rays.png)\n", self.text())
+        self.assertTrue((self.docs / "pictures/plots/rays.png").is_file())
 
     def test_formats(self) -> None:
         value = Value(-0.0044, -0.005, -0.004, 5, "ms", "time")
