@@ -15,7 +15,7 @@ constexpr float kHeight = 150;     // pixels, labels included
 constexpr float kLabelWidth = 42;  // six characters
 constexpr float kLabelHeight = 16;
 constexpr float kZeroHeight = 20;  // the row for exactly 0, above the labels
-constexpr std::size_t kTicksAcross = 4, kTicksUp = 5;
+constexpr std::size_t kTicksAcross = 5, kTicksUp = 5;
 constexpr ImU32 kFrameColor = IM_COL32(110, 110, 120, 255);
 constexpr ImU32 kGridColor = IM_COL32(60, 60, 66, 255);
 constexpr ImU32 kTextColor = IM_COL32(170, 170, 175, 255);

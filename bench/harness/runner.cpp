@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <set>
 
+#include "bench/harness/baseline.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 
@@ -26,10 +28,20 @@ void save(const BenchOptions& o, const RecordBook& book) {
   writeText(o.folder / "records.csv", toCsv(book));
 }
 
+RecordBook readRecords(const std::filesystem::path& file) {
+  return parseRecordBook(readText(file), file.string());
+}
+
 RecordBook keptIn(const BenchOptions& o, const RunInfo& run) {
   const std::filesystem::path file = o.folder / "records.json";
-  if (!std::filesystem::exists(file)) return {};
-  return keptRecords(parseRecordBook(readText(file), file.string()), run);
+  return std::filesystem::exists(file) ? keptRecords(readRecords(file), run) : RecordBook{};
+}
+
+/// Says what moved. False where something got worse.
+bool holdsUpTo(const RecordBook& baseline, const RecordBook& book) {
+  const BaselineReport report = compareToBaseline(baseline, book);
+  std::fputs(toText(report).c_str(), stdout);
+  return report.howMany(Verdict::worse) == 0;
 }
 
 bool finished(const RecordBook& book, const std::string& experiment) {
@@ -86,6 +98,8 @@ RecordBook keptRecords(const RecordBook& before, const RunInfo& now) {
 
 int runBench(const BenchOptions& o, const std::string& command, const std::stop_token& stop) {
   const std::vector<Experiment> experiments = chosenExperiments(o);
+  std::optional<RecordBook> baseline;  // read first: it may be the file that this run writes anew
+  if (!o.baseline.empty()) baseline = readRecords(o.baseline);
   std::filesystem::create_directories(o.folder);
   const RunInfo run = describeRun(command, o.seed);
   RecordBook book = keptIn(o, run);
@@ -105,6 +119,7 @@ int runBench(const BenchOptions& o, const std::string& command, const std::stop_
   save(o, book);
   writePage(o);
   std::printf("%zu records: %s\n", book.records.size(), (o.folder / "index.html").c_str());
+  if (baseline) good = holdsUpTo(*baseline, book) && good;
   return good ? 0 : 1;
 }
 
