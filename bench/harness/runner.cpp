@@ -40,6 +40,8 @@ RecordBook keptIn(const BenchOptions& o, const RunInfo& run) {
 /// Says what moved. False where something got worse.
 bool holdsUpTo(const RecordBook& baseline, const RecordBook& book) {
   const BaselineReport report = compareToBaseline(baseline, book);
+  for (const RunInfo& run : baseline.runs)
+    std::printf("baseline: %s, %s, on %s\n", run.commit.c_str(), run.command.c_str(), run.cpu.c_str());
   std::fputs(toText(report).c_str(), stdout);
   return report.howMany(Verdict::worse) == 0;
 }
