@@ -104,7 +104,9 @@ class Context:
 
 
 def metric_name(metric: str) -> str:
-    return METRICS.get(metric, metric.replace("_", " "))
+    plain = metric.removesuffix("_ms")
+    plain = f"{plain.removesuffix('_bytes')} memory" if plain.endswith("_bytes") else plain
+    return METRICS.get(metric, plain.replace("_", " "))
 
 
 def axis_label(metric: str, unit: str = "") -> str:
@@ -116,9 +118,8 @@ def axis_label(metric: str, unit: str = "") -> str:
 def hint(records: Iterable[Record], metrics: Sequence[str]) -> str:
     """Which way of the metrics is better, in words; nothing where they disagree."""
     better = {record.values[metric].better for record in records for metric in metrics if metric in record.values}
-    return (
-        {"lower": "lower is better ↓", "higher": "higher is better ↑"}.get(better.pop(), "") if len(better) == 1 else ""
-    )
+    words = {"lower": "lower is better ↓", "higher": "higher is better ↑"}
+    return words.get(better.pop(), "") if len(better) == 1 else ""
 
 
 def natural(text: str) -> tuple[tuple[int, float, str], ...]:

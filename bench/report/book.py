@@ -137,12 +137,13 @@ class Book:
         quotient = value.median / divisor.median
         return self.marked(other, self.marked(record, formatted(Value(quotient, quotient, quotient), how)))
 
-    def after(self, seconds: float, experiment: str, metric: str, how: str = "", **labels: str) -> str:
-        """What a method has after so many seconds: the figure of its longest measurement that took no longer."""
+    def after(self, seconds: float, experiment: str, metric: str, how: str = "", place: str = "", **labels: str) -> str:
+        """What a method has after so many seconds: the figure of its longest measurement that took no longer; with
+        `place` only of those that say it in `at` ("spp": was given samples a pixel, "seconds": was given time)."""
         found = [
             (record.values["seconds"].median, record.key)
             for record in self.select(experiment, **labels)
-            if metric in record.values and "seconds" in record.values
+            if metric in record.values and "seconds" in record.values and (not place or place in record.at)
         ]
         in_time = [pair for pair in found if pair[0] <= seconds]
         return self.figure(f"{max(in_time)[1]}:{metric}", how) if in_time else "–"

@@ -30,6 +30,8 @@ from records import Record
 # Variants of a method, and the value that stands for each while another one is varied.
 _USUAL = {"order": "attention", "cache": "on", "attention": "0.5"}
 
+# Experiments that are measured against something else than the scene's reference.
+_OTHER_TRUTH = ("order", "peers")
 # Where a record stands on the x axis, with the range of its repeats.
 Place = Callable[[Record], tuple[float, tuple[float, float] | None] | None]
 
@@ -42,9 +44,10 @@ def _stem(*words: str) -> str:
 
 
 def _cost(record: Record) -> tuple[float, tuple[float, float] | None] | None:
-    """What was spent: a frame's budget (ms), seconds as measured, or else as granted; None where nothing says."""
-    if "budget_ms" in record.at:
-        return record.at["budget_ms"], None
+    """What was spent: a frame's budget (ms), samples, seconds as measured or else as granted; None if nothing says."""
+    for amount in ("budget_ms", "samples"):
+        if amount in record.at:
+            return record.at[amount], None
     measured = record.values.get("seconds")
     if measured:
         return measured.median, (measured.min, measured.max)
@@ -66,12 +69,15 @@ def point(record: Record, metric: str, place: Place = _cost) -> Point | None:
 
 
 def curves(records: Sequence[Record], names: Sequence[str], metric: str, place: Place = _cost) -> list[Curve]:
-    """One curve for each combination of the labels `names`."""
+    """One curve for each combination of the labels `names`; a method that was given time and, in other records, samples
+    a pixel has a curve for each."""
     found: dict[str, Curve] = {}
+    timed = {variant_name(record, names) for record in records if "seconds" in record.at}
     for record in records:
         where = point(record, metric, place)
         if where:
             name = variant_name(record, names) or record.experiment
+            name += ", by samples a pixel" if "spp" in record.at and name in timed else ""
             found.setdefault(name, Curve(name)).points.append(where)
     return sorted(found.values(), key=lambda curve: natural(curve.name))
 
@@ -107,11 +113,16 @@ def _is_reference(record: Record) -> bool:
 
 
 def floor(context: Context, records: Sequence[Record], metric: str) -> list[Line]:
-    """The error of what the records were measured against: of a reference of the same experiment, else of the scene's."""
-    of_scene = [r for r in context.everything if r.labels.get("scene", "") == records[0].labels.get("scene", "")]
-    references = [record for record in of_scene if _is_reference(record) and record.median(metric)]
-    references.sort(key=lambda record: record.experiment != records[0].experiment)
-    return [Line("the reference's own error", references[0].median(metric) or 0.0)] if references else []
+    """The error of what the records were measured against: of their experiment's own reference (a record of method
+    "reference", or a value own_METRIC), else of the scene's, unless the experiment has another truth."""
+    experiment, scene = records[0].experiment, records[0].labels.get("scene", "")
+    of_scene = [record for record in context.everything if record.labels.get("scene", "") == scene]
+    found = [r.median(metric) for r in of_scene if r.experiment == experiment and _is_reference(r)]
+    found += [r.median(f"own_{metric}") for r in of_scene if r.experiment == experiment]
+    if experiment not in _OTHER_TRUTH:
+        found += [r.median(metric) for r in of_scene if r.experiment == "reference"]
+    errors = [error for error in found if error]
+    return [Line("the reference's own error", errors[0])] if errors else []
 
 
 def _exact_motion(records: Sequence[Record], metric: str) -> list[Curve]:
@@ -241,7 +252,8 @@ def _kind_panels(records: Sequence[Record], names: Sequence[str], kind: str, x_l
         for metric in metrics:
             for curve in curves(records, names, metric, _amount):
                 plain = curve.name == records[0].experiment
-                curve.name = metric_name(metric) if plain else f"{metric_name(metric)}, {curve.name}"
+                variant = curve.name.removeprefix(f"{names[0]} ") if len(names) == 1 else curve.name
+                curve.name = metric_name(metric) if plain else f"{metric_name(metric)}, {variant}"
                 found.append(curve)
         word = _KINDS[kind]
         panels.append(Panel(hint(records, metrics), x_label, f"{word} ({unit})" if unit else word, found))

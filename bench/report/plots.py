@@ -1,6 +1,7 @@
 """Plots in one house style: colour-blind-safe, readable in black and white, each as SVG and PNG.
 
-A figure is a row of panels that share one legend; a panel holds curves. Nothing here knows an experiment.
+A figure is a row of panels, a panel holds curves; where panels share curves, they share one legend. Nothing here knows
+an experiment.
 """
 
 from __future__ import annotations
@@ -110,25 +111,20 @@ class Plot:
 
 
 def styles(names: list[str]) -> dict[str, dict[str, object]]:
-    """Colour, marker and dash of each name: known names keep theirs, others take what is free."""
-    taken = {_KNOWN[name] for name in names if name in _KNOWN}
+    """Colour, marker and dash of each curve. What stands before the first comma has the colour (known names their own,
+    others what is free), what follows the dash."""
+    families = list(dict.fromkeys(name.split(", ")[0] for name in names))
+    taken = {_KNOWN[family] for family in families if family in _KNOWN}
     free = [place for place in range(len(_PALETTE)) if place not in taken]
-    rest = [place for place in range(len(_PALETTE))]
+    unknown = [family for family in families if family not in _KNOWN]
     result: dict[str, dict[str, object]] = {}
-    turn = 0
-    for name in names:
-        if name in _KNOWN:
-            place, dash = _KNOWN[name], 0
-        elif turn < len(free):
-            place, dash, turn = free[turn], 0, turn + 1
-        else:
-            over = turn - len(free)
-            place, dash, turn = rest[over % len(rest)], 1 + over // len(rest) % 2, turn + 1
-        result[name] = {
-            "color": _PALETTE[place],
-            "marker": _MARKERS[(place + dash) % len(_MARKERS)],
-            "linestyle": _DASHES[dash],
-        }
+    for family in families:
+        turn = unknown.index(family) if family in unknown else 0
+        place = free[turn % len(free)] if family in unknown else _KNOWN[family]
+        members = [name for name in names if name.split(", ")[0] == family]
+        for step, name in enumerate(members, start=turn // len(free)):
+            marker = _MARKERS[(place + step) % len(_MARKERS)]
+            result[name] = {"color": _PALETTE[place], "marker": marker, "linestyle": _DASHES[step % len(_DASHES)]}
     return result
 
 
@@ -138,18 +134,24 @@ def draw(folder: Path, stem: str, title: str, panels: list[Panel]) -> Plot | Non
     if not panels:
         return None
     names = list(dict.fromkeys(curve.name for panel in panels for curve in panel.curves))
-    looks = styles(names)
+    shared = len(panels) == 1 or len(names) < sum(len(panel.curves) for panel in panels)
     columns = 2 if len(panels) == 4 else min(_PANELS_A_ROW, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = pyplot.subplots(
-        rows, columns, figsize=(PANEL_WIDTH * columns, PANEL_HEIGHT * rows + 0.8), squeeze=False
+        rows,
+        columns,
+        figsize=((PANEL_WIDTH + (0 if shared else 1)) * columns, PANEL_HEIGHT * rows + 0.8),
+        squeeze=False,
     )
     cells = list(axes.flat)
     for cell, panel in zip(cells, panels):
-        _draw_panel(cell, panel, looks)
+        _draw_panel(cell, panel, styles(names if shared else [curve.name for curve in panel.curves]))
+        if not shared:
+            cell.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncol=2, fontsize=8)
     for cell in cells[len(panels) :]:
         cell.axis("off")
-    _legend(figure, cells[: len(panels)])
+    if shared:
+        _legend(figure, cells[: len(panels)])
     height = figure.get_figheight()
     figure.tight_layout(rect=(0, 0, 1, 1 - 0.3 / height))
     figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left", y=1.0, va="top")

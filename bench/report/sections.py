@@ -39,6 +39,11 @@ SECTIONS: dict[str, Section] = {
         "The camera rests: how far is each method's picture from the reference after so many seconds?",
         partial(error_against_cost, metrics=_ERRORS, x_label="time spent (s)"),
     ),
+    "order": Section(
+        "Orders of samples",
+        "Which order of samples nears the converged picture with the fewest?",
+        partial(error_against_cost, metrics=_ERRORS, x_label="corrective samples"),
+    ),
     "moving": Section(
         "Moving camera",
         "The camera walks a path and every frame has a deadline: how far off are the frames, and are they in time?",
