@@ -3,11 +3,10 @@
 #include <utility>
 
 #include "app/cli/walk_options.h"
-#include "attention/spectral_residual.h"
 #include "bench/harness/machine.h"
+#include "bench/harness/trials.h"
 #include "bench/methods/walkers.h"
 #include "bench/reference/reference.h"
-#include "core/image_io.h"
 
 namespace saccade::bench {
 namespace {
@@ -30,23 +29,23 @@ Course::Course(Session& session, const CourseOptions& options)
 void Course::addReferences(Session& session, const CourseOptions& options) {
   const Confidence confidence{options.referenceRelmse, options.referenceSeconds};
   const Schedule keyViews(stretch_, stretch_.segment);
-  std::map<std::string, std::vector<double>> own;
+  std::vector<Grade> own;
+  std::vector<double> samplesPerPixel;
   for (int k = 0; k < keyViews.keyViews(); ++k) {
     const core::Camera camera = path_.at(keyViews.seconds(keyViews.frameOf(k)));
-    const Reference reference =
+    Reference reference =
         referenceOf(*stage_->workspace, {.camera = camera, .size = size_}, confidence, session.stop());
-    own["relmse"].push_back(reference.own.relmse);
-    own["rmse"].push_back(reference.own.rmse);
-    own["flip"].push_back(reference.own.flip);
-    truths_.push_back(
-        {reference.radiance, attention::spectralResidual(core::toDisplay(reference.radiance, 0))});
+    samplesPerPixel.push_back(static_cast<double>(reference.samplesPerPixel));
+    truths_.emplace_back(std::move(reference.radiance));
+    own.push_back({reference.own, truths_.back().flipSalient(reference.own)});
   }
-  referenceFile_ = session.picture("moving_" + name() + "_reference", truths_.back().reference);
+  referenceFile_ = session.picture("moving_" + name() + "_reference", truths_.back().reference());
   Record record;
   record.key = "moving/" + name() + "/reference";
   record.labels = {{"scene", name()}, {"method", "reference"}};
   // Over key views, not repeats: the floor below which no difference means anything.
-  for (const auto& [metric, values] : own) record.values[metric] = Value::errors(values);
+  addErrors(record, own);
+  record.values["spp"] = Value::count(spread(samplesPerPixel).median);
   record.files = {{"picture", referenceFile_}};
   session.add(std::move(record), nullptr);
 }

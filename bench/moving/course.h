@@ -36,7 +36,7 @@ class Course {
   WalkResult raytraceShots(double budgetSeconds);
 
   const std::string& name() const { return stage_->name; }
-  const std::vector<KeyTruth>& truths() const { return truths_; }
+  const std::vector<Grader>& truths() const { return truths_; }
   const Stretch& stretch() const { return stretch_; }
   /// The picture of the last key view's reference, relative to the session's folder.
   const std::string& referenceFile() const { return referenceFile_; }
@@ -48,7 +48,7 @@ class Course {
   app::ImageSize size_;
   app::CameraPath path_;
   Stretch stretch_;
-  std::vector<KeyTruth> truths_;
+  std::vector<Grader> truths_;  ///< by key view
   std::string referenceFile_;
 };
 

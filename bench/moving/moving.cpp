@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "app/session/stats.h"
 #include "bench/harness/machine.h"
 #include "bench/moving/course.h"
 #include "bench/moving/matrix.h"
@@ -16,7 +15,22 @@ namespace {
 /// Pictures of the main variants are kept at this one.
 constexpr double kPictureBudgetMs = 66;
 
-using Repeats = std::map<std::string, std::vector<double>>;  ///< by metric
+/// What the walks of one method gave.
+struct Trials {
+  Method method;
+  std::vector<Grade> grades;  ///< by walk, as all below
+  std::vector<double> steps;
+  std::map<std::string, std::vector<double>> speeds;
+  std::vector<double> peakBytes;
+  WalkResult last;
+
+  void take(WalkResult walk, const Course& course) {
+    grades.push_back(meanGrade(walk, course.truths()));
+    steps.push_back(stepOf(walk));
+    for (const auto& [name, value] : speedOf(walk)) speeds[name].push_back(value);
+    last = std::move(walk);
+  }
+};
 
 std::string at(double budgetMs) {
   char text[32];
@@ -24,32 +38,40 @@ std::string at(double budgetMs) {
   return text;
 }
 
-void append(Repeats& repeats, const Metrics& metrics) {
-  for (const auto& [name, value] : metrics) repeats[name].push_back(value);
+std::vector<Trials> trialsOf(std::vector<Method> methods) {
+  std::vector<Trials> trials;
+  for (Method& method : methods) trials.push_back({std::move(method), {}, {}, {}, {}, {}});
+  return trials;
 }
 
-Metrics metricsOf(const WalkResult& walk, const Course& course) {
-  Metrics metrics = errorsOf(walk, course.truths());
-  metrics.merge(speedOf(walk));
-  return metrics;
+/// A warm-up and kRepeats walks of each, in alternating order.
+void walkAll(Session& session, Course& course, double budgetSeconds, std::vector<Trials>& trials) {
+  alternate(static_cast<int>(trials.size()), kRepeats, session.stop(), [&](int i, int round) {
+    Trials& own = trials[static_cast<std::size_t>(i)];
+    const PeakMemory peak;
+    WalkResult walk = course.walk(own.method, budgetSeconds, round < 0);
+    if (round < 0) return;
+    own.peakBytes.push_back(static_cast<double>(peak.bytes()));
+    own.take(std::move(walk), course);
+  });
 }
 
-Record recordOf(const Course& course, const Method& method, const std::string& suffix, const Repeats& repeats,
-                std::size_t frames) {
+Record recordOf(const Course& course, const Trials& trials, const std::string& suffix) {
   Record record;
-  record.key = "moving/" + course.name() + "/" + method.key() + suffix;
-  record.labels = method.labels;
+  record.key = "moving/" + course.name() + "/" + trials.method.key() + suffix;
+  record.labels = trials.method.labels;
   record.labels["scene"] = course.name();
-  for (const auto& [name, values] : repeats) record.values[name] = valueOf(name, values);
-  record.values["frames"] = Value::count(static_cast<double>(frames));
-  record.values["peak_bytes"] = Value::bytes(static_cast<double>(app::peakBytes()));
+  addErrors(record, trials.grades);
+  for (const auto& [name, values] : trials.speeds) record.values[name] = speedValue(name, values);
+  record.values["frames"] = Value::count(static_cast<double>(trials.last.stats.frameMs.size()));
+  record.values["peak_bytes"] = Value::bytes(spread(trials.peakBytes).max);
   return record;
 }
 
 /// Displayed frame, reference and error at the last key view.
 std::map<std::string, std::string> picturesOf(Session& session, const Course& course, const std::string& name,
                                               const Shot& shot) {
-  const core::ImageGray map = core::compareLinear(course.truths().back().reference, shot.linear).flipMap;
+  const core::ImageGray map = core::compareLinear(course.truths().back().reference(), shot.linear).flipMap;
   const std::string file = "moving_" + course.name() + "_" + name;
   return {{"picture", session.picture(file, shot.display)},
           {"reference", course.referenceFile()},
@@ -72,120 +94,99 @@ void sayRow(const Session& session, const Record& record) {
   session.say(line);
 }
 
-/// All methods of one budget on one course.
-class BudgetWalks {
- public:
-  BudgetWalks(Session& session, Course& course, double budgetMs)
-      : session_(session),
-        course_(course),
-        budgetMs_(budgetMs),
-        methods_(movingMethods(session.options(), budgetMs)),
-        repeats_(methods_.size()),
-        last_(methods_.size()) {}
-
-  void run() {
-    if (methods_.empty()) return;
-    const double motion = stepsOf(course_.raytraceShots(budgetMs_ / 1000)).at("flip_step");
-    const LoadWatch watch;
-    alternate(static_cast<int>(methods_.size()), kRepeats, session_.stop(),
-              [&](int method, int round) { walk(static_cast<std::size_t>(method), round < 0); });
-    for (std::size_t i = 0; i < methods_.size(); ++i) addRow(i, motion, watch);
-    addAgainst(watch);
-  }
-
- private:
-  void walk(std::size_t i, bool warmUp) {
-    WalkResult walk = course_.walk(methods_[i], budgetMs_ / 1000, warmUp);
-    if (warmUp) return;
-    append(repeats_[i], metricsOf(walk, course_));
-    append(repeats_[i], stepsOf(walk));
-    last_[i] = std::move(walk);
-  }
-
-  bool isMain(std::size_t i) const {
-    const std::string key = methods_[i].key();
-    return key == kMainMethod || key == "base" || key == std::string(kMainMethod) + "-nocache";
-  }
-
-  void addRow(std::size_t i, double motion, const LoadWatch& watch) {
-    Record record = recordOf(course_, methods_[i], at(budgetMs_), repeats_[i], last_[i].stats.frameMs.size());
-    record.at["budget_ms"] = budgetMs_;
-    record.values["flip_step_raytrace"] = valueOf("flip_step_raytrace", {motion});
-    if (isMain(i) && budgetMs_ == kPictureBudgetMs)
-      record.files =
-          picturesOf(session_, course_, methods_[i].key() + at(budgetMs_).substr(1), last_[i].shots.back());
-    sayRow(session_, record);
-    session_.add(std::move(record), &watch);
-  }
-
-  /// Does attention pay, does reuse, do corrections: the main method's error over each other one's.
-  void addAgainst(const LoadWatch& watch) {
-    const auto main = std::find_if(methods_.begin(), methods_.end(),
-                                   [](const Method& m) { return m.key() == kMainMethod; });
-    if (main == methods_.end() || methods_.size() < 2) return;
-    const Repeats& ours = repeats_[static_cast<std::size_t>(main - methods_.begin())];
-    Record record;
-    record.key = "moving/" + course_.name() + "/against" + at(budgetMs_);
-    record.labels = main->labels;
-    record.labels["scene"] = course_.name();
-    record.at["budget_ms"] = budgetMs_;
-    std::string line = record.key + ", " + kMainMethod + " over others (flip, salient; below 1 it pays):";
-    for (std::size_t i = 0; i < methods_.size(); ++i) {
-      if (methods_[i].key() == kMainMethod) continue;
-      for (const char* metric : {"flip", "flip_salient", "relmse"})
-        record.values[std::string(metric) + "_over_" + methods_[i].key()] =
-            Value::ratio(ratios(ours.at(metric), repeats_[i].at(metric)), Better::lower);
-      char text[128];
-      std::snprintf(text, sizeof text, " %s %.3f %.3f;", methods_[i].key().c_str(),
-                    record.values["flip_over_" + methods_[i].key()].median,
-                    record.values["flip_salient_over_" + methods_[i].key()].median);
-      line += text;
-    }
-    session_.say(line);
-    session_.add(std::move(record), &watch);
-  }
-
-  Session& session_;
-  Course& course_;
-  double budgetMs_;
-  std::vector<Method> methods_;
-  std::vector<Repeats> repeats_;  ///< by method
-  std::vector<WalkResult> last_;  ///< by method: the last walk
-};
-
-/// Shares of frames that would have missed each budget.
-Metrics missesOf(const WalkResult& walk, const std::vector<double>& budgetsMs) {
-  const std::vector<double>& times = walk.stats.frameMs;
-  Metrics shares;
-  for (const double ms : budgetsMs) {
-    const auto budget = app::FrameBudget::untilDeadline(std::chrono::duration<double, std::milli>(ms));
-    const auto missed = std::count_if(times.begin(), times.end(), [&](double taken) {
-      return budget.missedAfter(std::chrono::duration<double, std::milli>(taken));
-    });
-    shares["missed_share_" + at(ms).substr(1)] =
-        static_cast<double>(missed) / static_cast<double>(times.size());
-  }
-  return shares;
+bool isMain(const Method& method) {
+  const std::string key = method.key();
+  return key == kMainMethod || key == "base" || key == std::string(kMainMethod) + "-nocache";
 }
 
-/// raytrace and path: the key views alone, since their frames know nothing of those before.
-void walkUnbudgeted(Session& session, Course& course) {
-  const std::vector<Method> methods = unbudgetedMethods(session.options());
-  std::vector<Repeats> repeats(methods.size());
-  std::vector<WalkResult> last(methods.size());
+Value motion(const std::vector<double>& repeats) {
+  Value value = Value::errors(repeats);
+  value.better = Better::neither;
+  return value;
+}
+
+/// kMainMethod's errors over another's, walk by walk.
+void addRatios(Record& record, const Trials& ours, const Trials& other) {
+  const auto add = [&](const char* name, auto figure) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < ours.grades.size(); ++i)
+      values.push_back(figure(ours.grades[i]) / figure(other.grades[i]));
+    record.values[std::string(name) + "_over_" + other.method.key()] = Value::ratio(values, Better::lower);
+  };
+  add("flip", [](const Grade& g) { return g.errors.flip; });
+  add("flip_salient", [](const Grade& g) { return g.flipSalient; });
+  add("relmse", [](const Grade& g) { return g.errors.relmse; });
+}
+
+/// Does attention pay, does reuse, do corrections?
+void addAgainst(Session& session, const Course& course, double budgetMs, const std::vector<Trials>& trials,
+                const LoadWatch& watch) {
+  const auto ours = std::find_if(trials.begin(), trials.end(),
+                                 [](const Trials& t) { return t.method.key() == kMainMethod; });
+  if (ours == trials.end() || trials.size() < 2) return;
+  Record record;
+  record.key = "moving/" + course.name() + "/against" + at(budgetMs);
+  record.labels = ours->method.labels;
+  record.labels["scene"] = course.name();
+  record.at["budget_ms"] = budgetMs;
+  for (const Trials& other : trials) {
+    if (&other != &*ours) addRatios(record, *ours, other);
+  }
+  std::string line = std::string(kMainMethod) + " over others in flip_salient (below 1 it pays):";
+  const std::string prefix = "flip_salient_over_";
+  for (const auto& [name, value] : record.values) {
+    if (!name.starts_with(prefix)) continue;
+    char text[128];
+    std::snprintf(text, sizeof text, " %s %.3f (%.3f to %.3f)", name.substr(prefix.size()).c_str(),
+                  value.median, value.min, value.max);
+    line += text;
+  }
+  session.say(record.key + ", " + line);
+  session.add(std::move(record), &watch);
+}
+
+void walkBudget(Session& session, Course& course, double budgetMs) {
+  std::vector<Trials> trials = trialsOf(movingMethods(session.options(), budgetMs));
+  if (trials.empty()) return;
+  const double exactStep = stepOf(course.raytraceShots(budgetMs / 1000));
   const LoadWatch watch;
-  alternate(static_cast<int>(methods.size()), kRepeats, session.stop(), [&](int method, int round) {
-    const auto i = static_cast<std::size_t>(method);
-    last[i] = course.walk(methods[i], course.stretch().segment, round < 0);
-    if (round < 0) return;
-    Metrics metrics = metricsOf(last[i], course);
-    metrics.erase("missed_share");
-    append(repeats[i], metrics);
-    append(repeats[i], missesOf(last[i], movingBudgets(session.options().suite)));
+  walkAll(session, course, budgetMs / 1000, trials);
+  for (const Trials& own : trials) {
+    Record record = recordOf(course, own, at(budgetMs));
+    record.at["budget_ms"] = budgetMs;
+    record.values["flip_step"] = motion(own.steps);
+    record.values["flip_step_raytrace"] = motion({exactStep});
+    if (isMain(own.method) && budgetMs == kPictureBudgetMs)
+      record.files =
+          picturesOf(session, course, own.method.key() + at(budgetMs).substr(1), own.last.shots.back());
+    sayRow(session, record);
+    session.add(std::move(record), &watch);
+  }
+  addAgainst(session, course, budgetMs, trials, watch);
+}
+
+double missedShare(const std::vector<double>& frameMs, double budgetMs) {
+  const auto budget = app::FrameBudget::untilDeadline(std::chrono::duration<double, std::milli>(budgetMs));
+  const auto missed = std::count_if(frameMs.begin(), frameMs.end(), [&](double ms) {
+    return budget.missedAfter(std::chrono::duration<double, std::milli>(ms));
   });
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    Record record = recordOf(course, methods[i], "", repeats[i], last[i].stats.frameMs.size());
-    record.files = picturesOf(session, course, methods[i].key(), last[i].shots.back());
+  return static_cast<double>(missed) / static_cast<double>(frameMs.size());
+}
+
+/// raytrace and path: the key views alone, since their frames know nothing of those before. They stand at the
+/// time that their frames take; how many of the last walk's would have missed each budget is said.
+void walkUnbudgeted(Session& session, Course& course) {
+  std::vector<Trials> trials = trialsOf(unbudgetedMethods(session.options()));
+  if (trials.empty()) return;
+  const LoadWatch watch;
+  walkAll(session, course, course.stretch().segment, trials);
+  for (Trials& own : trials) {
+    own.speeds.erase("missed_share");
+    for (const double ms : movingBudgets(session.options().suite))
+      own.speeds["missed_share_" + at(ms).substr(1)] = {missedShare(own.last.stats.frameMs, ms)};
+    Record record = recordOf(course, own, "");
+    record.at["frame_ms"] = record.values.at("frame_p50").median;
+    record.files = picturesOf(session, course, own.method.key(), own.last.shots.back());
     sayRow(session, record);
     session.add(std::move(record), &watch);
   }
@@ -196,9 +197,10 @@ std::vector<CourseOptions> coursesOf(const BenchOptions& options) {
   course.size = options.suite == Suite::quick ? app::ImageSize{128, 128} : app::ImageSize{256, 256};
   course.quality = options.suite == Suite::quick ? "preview" : "medium";
   if (options.suite == Suite::quick) {
-    course.segment = 0.25;
+    course.segment = 0.375;
+    course.segments = 2;
     course.referenceRelmse = 1e-2;
-    course.referenceSeconds = 3;
+    course.referenceSeconds = 6;
   }
   std::vector<CourseOptions> courses;
   const auto add = [&](const std::string& scene, const std::string& path) {
@@ -222,7 +224,7 @@ void measureMoving(Session& session) {
     Course course(session, options);
     for (const double budgetMs : movingBudgets(session.options().suite)) {
       session.checkStop();
-      BudgetWalks(session, course, budgetMs).run();
+      walkBudget(session, course, budgetMs);
     }
     walkUnbudgeted(session, course);
   }

@@ -24,16 +24,14 @@ app::RunStats since(const app::RunStats& first, app::RunStats all) {
   return all;
 }
 
-void addTo(Metrics& sum, const Metrics& more, double factor) {
-  for (const auto& [name, value] : more) sum[name] += factor * value;
-}
-
-Metrics errorsOf(const core::ImageRgb& picture, const KeyTruth& truth) {
-  const core::Comparison c = core::compareLinear(truth.reference, picture);
-  return {{"flip", c.flip},        {"flip_median", c.flipMedian},
-          {"flip_p95", c.flipP95}, {"flip_salient", core::weightedMeanOf(c.flipMap, truth.salience)},
-          {"relmse", c.relmse},    {"rmse", c.rmse},
-          {"psnr", c.psnr},        {"ssim", c.ssim}};
+/// Every figure that addErrors() reports.
+void addTo(Grade& sum, const Grade& more, double factor) {
+  for (double core::Comparison::*figure :
+       {&core::Comparison::rmse, &core::Comparison::relmse, &core::Comparison::psnr,
+        &core::Comparison::maxAbs, &core::Comparison::ssim, &core::Comparison::flip,
+        &core::Comparison::flipMedian, &core::Comparison::flipP95})
+    sum.errors.*figure += factor * (more.errors.*figure);
+  sum.flipSalient += factor * more.flipSalient;
 }
 
 }  // namespace
@@ -58,18 +56,19 @@ WalkResult walkOnce(Walker& walker, const app::CameraPath& path, const Schedule&
   return result;
 }
 
-Metrics errorsOf(const WalkResult& walk, const std::vector<KeyTruth>& truths) {
+Grade meanGrade(const WalkResult& walk, const std::vector<Grader>& truths) {
   assert(walk.shots.size() == truths.size());
-  Metrics mean;
+  Grade mean;
+  mean.errors.ssim = 0;
   for (std::size_t i = 0; i < truths.size(); ++i)
-    addTo(mean, errorsOf(walk.shots[i].linear, truths[i]), 1 / static_cast<double>(truths.size()));
+    addTo(mean, truths[i].grade(walk.shots[i].linear), 1 / static_cast<double>(truths.size()));
   return mean;
 }
 
-Metrics stepsOf(const WalkResult& walk) {
+double stepOf(const WalkResult& walk) {
   double sum = 0;
   for (const Shot& shot : walk.shots) sum += core::meanOf(core::flip(shot.before, shot.display));
-  return {{"flip_step", sum / static_cast<double>(walk.shots.size())}};
+  return sum / static_cast<double>(walk.shots.size());
 }
 
 Metrics speedOf(const WalkResult& walk) {
@@ -87,19 +86,13 @@ Metrics speedOf(const WalkResult& walk) {
           {"reused_per_frame", static_cast<double>(s.samplesReused) / frames}};
 }
 
-Value valueOf(const std::string& name, const std::vector<double>& repeats) {
+Value speedValue(const std::string& name, const std::vector<double>& repeats) {
   if (name.starts_with("frame_p")) return Value::milliseconds(repeats);
   if (name.ends_with("_per_second")) return Value::rate(repeats);
-  if (name.ends_with("_per_frame")) {
-    Value value = Value::rate(repeats);
-    value.unit = "1/frame";
-    return value;
-  }
   if (name.starts_with("missed_share")) return Value::ratio(repeats, Better::lower);
-  Value value = Value::errors(repeats);
-  if (name == "psnr") value.unit = "dB";
-  if (name == "psnr" || name == "ssim") value.better = Better::higher;
-  if (name.starts_with("flip_step")) value.better = Better::neither;
+  assert(name.ends_with("_per_frame"));
+  Value value = Value::rate(repeats);
+  value.unit = "1/frame";
   return value;
 }
 
