@@ -51,6 +51,14 @@ void applyTextures(const World& world, const Hit& hit, const Vec2& uv0, const Co
   if (m.transmissionTexture) p.transmission *= texel(m.transmissionTexture).x;
 }
 
+core::Vec4 vertexColor(const World& world, const Hit& hit) {
+  return interpolateMesh(world, hit, world.meshOf(hit.object).colors);
+}
+
+float coverageOf(const CompiledMaterial& m, float alpha) {
+  return m.alphaMode == core::AlphaMode::blend ? std::clamp(alpha, 0.0f, 1.0f) : 1.0f;
+}
+
 MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const CompiledMaterial& m,
                                const Vec2& uv0) {
   MaterialPoint p;
@@ -66,11 +74,11 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Compile
   p.diffuseFactor = m.diffuseFactor;
   if (m.textured) applyTextures(world, hit, uv0, m, p);
   if (world.hasColors(hit.object)) {
-    const core::Vec4 c = interpolateMesh(world, hit, world.meshOf(hit.object).colors);
+    const core::Vec4 c = vertexColor(world, hit);
     p.baseColor *= Vec3(c);
     p.coverage *= c.w;
   }
-  p.coverage = m.alphaMode == core::AlphaMode::blend ? std::clamp(p.coverage, 0.0f, 1.0f) : 1.0f;
+  p.coverage = coverageOf(m, p.coverage);
   return p;
 }
 
@@ -207,23 +215,59 @@ Vec3 emissionAt(const World& world, std::uint32_t triangle, float u, float v) {
 }
 
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction) {
+  return BaseLookup(world, hit, direction).read();
+}
+
+BaseLookup::BaseLookup(const World& world, const Hit& hit, const Vec3& direction)
+    : world_(world),
+      hit_(hit),
+      material_(world.materialOf(hit.object)),
+      front_(glm::dot(hit.ng, direction) <= 0) {
   const TriangleRecord& record = world.record(hit.triangle);
-  const CompiledMaterial& m = world.materialOf(hit.object);
-  const bool front = glm::dot(hit.ng, direction) <= 0;
+  Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
+  if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
+  map_ = world.mapFootprint(uv, front_ ? 0 : 1);
+  world.prefetch(map_);
+  if (!material_.textured) return;
+  uv0_ = interpolate(record.uv0, hit.u, hit.v);
+  if (const TextureView& texture = material_.baseColorTexture) {
+    color_ = texture.footprint(textureUv(world, hit, uv0_, texture));
+    texture.prefetch(color_);
+  }
+}
+
+core::Vec4 BaseLookup::texel(const TextureView& texture) const {
+  return texture.sample(textureUv(world_, hit_, uv0_, texture));
+}
+
+/// baseAlbedo, with no more texels than it needs.
+Vec3 BaseLookup::albedo(const Vec3& color) const {
+  const CompiledMaterial& m = material_;
+  float metallic = m.metallic, transmission = m.transmission;
+  if (metallic > 0 && m.metallicRoughnessTexture) metallic *= texel(m.metallicRoughnessTexture).z;
+  if (transmission > 0 && m.transmissionTexture) transmission *= texel(m.transmissionTexture).x;
+  return color * ((1 - metallic) * (1 - transmission) * m.diffuseFactor);
+}
+
+BaseLight BaseLookup::read() const {
+  const CompiledMaterial& m = material_;
+  core::Vec4 color(m.baseColor, m.alpha);
+  if (m.baseColorTexture) color *= m.baseColorTexture.mix(color_);
+  if (world_.hasColors(hit_.object)) color *= vertexColor(world_, hit_);
   BaseLight light;
-  const MaterialPoint p = evaluateMaterial(world, hit, m, interpolate(record.uv0, hit.u, hit.v));
-  light.coverage = p.coverage;
-  if (!front && !m.scattersBehind()) return light;
+  light.coverage = coverageOf(m, color.w);
+  if (!front_ && !m.scattersBehind()) return light;
   if (m.unlit) {
-    light.reflected = p.baseColor;
+    light.reflected = Vec3(color);
     return light;
   }
-  if (front || m.doubleSided) light.emitted = p.emission;
-  const Vec3 albedo = baseAlbedo(p);
-  if (albedo.x + albedo.y + albedo.z > 0) {
-    Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
-    if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
-    light.reflected = albedo * (1 / core::kPi) * world.irradiance(uv, front ? 0 : 1);
+  if (m.emits() && (front_ || m.doubleSided)) {
+    light.emitted = m.emission;
+    if (m.emissionTexture) light.emitted *= Vec3(texel(m.emissionTexture));
+  }
+  const Vec3 reflectance = albedo(Vec3(color));
+  if (reflectance.x + reflectance.y + reflectance.z > 0) {
+    light.reflected = reflectance * (1 / core::kPi) * world_.irradiance(map_);
   }
   return light;
 }

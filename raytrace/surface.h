@@ -56,6 +56,26 @@ struct BaseLight {
 };
 BaseLight baseLight(const World& world, const Hit& hit, const Vec3& direction);
 
+/// baseLight in two steps: the constructor finds the texels and sends for them, read() reads them. Between
+/// the two other rays may be traced. Refers to world and hit.
+class BaseLookup {
+ public:
+  BaseLookup(const World& world, const Hit& hit, const Vec3& direction);
+  BaseLight read() const;
+
+ private:
+  Vec3 albedo(const Vec3& color) const;
+  core::Vec4 texel(const TextureView& texture) const;
+
+  const World& world_;
+  const Hit& hit_;
+  const CompiledMaterial& material_;
+  Vec2 uv0_{0};
+  bool front_ = true;
+  TexelFootprint color_;  ///< of the material's base colour texture, if any
+  MapFootprint map_;
+};
+
 /// Diffuse reflectance that maps and base layer use: baseColor (1 - metallic) (1 - transmission)
 /// diffuseFactor.
 inline Vec3 baseAlbedo(const MaterialPoint& m) {

@@ -54,12 +54,14 @@ int wrapTexel(int i, int size, core::Wrap wrap) {
   return (wrap == core::Wrap::repeat) == below ? size - 1 : 0;
 }
 
-/// x, y >= 0.
-std::size_t tiledIndex(int x, int y, int tilesAcross) {
-  const auto column = static_cast<unsigned>(x), row = static_cast<unsigned>(y);
-  const std::size_t tile =
-      static_cast<std::size_t>(row / kTile) * static_cast<unsigned>(tilesAcross) + column / kTile;
-  return tile * kTexelsPerTile + (row % kTile) * kTile + column % kTile;
+/// A texel's place in the tiled order is the sum of its column's and its row's, both >= 0.
+std::uint32_t tiledColumn(int x) {
+  const auto column = static_cast<unsigned>(x);
+  return column / kTile * kTexelsPerTile + column % kTile;
+}
+std::uint32_t tiledRow(int y, int tilesAcross) {
+  const auto row = static_cast<unsigned>(y);
+  return row / kTile * static_cast<unsigned>(tilesAcross) * kTexelsPerTile + row % kTile * kTile;
 }
 
 int tiles(int size) { return (size + static_cast<int>(kTile) - 1) / static_cast<int>(kTile); }
@@ -87,9 +89,9 @@ TextureStore::TextureStore(const core::Scene& scene) {
       for (int y = 0; y < v.height; ++y) {
         for (int x = 0; x < v.width; ++x) {
           const core::Rgba8& p = t.image.at(x, y);
-          next[tiledIndex(x, y, v.tilesAcross)] = p.r | static_cast<std::uint32_t>(p.g) << 8 |
-                                                  static_cast<std::uint32_t>(p.b) << 16 |
-                                                  static_cast<std::uint32_t>(p.a) << 24;
+          next[tiledColumn(x) + tiledRow(y, v.tilesAcross)] = p.r | static_cast<std::uint32_t>(p.g) << 8 |
+                                                              static_cast<std::uint32_t>(p.b) << 16 |
+                                                              static_cast<std::uint32_t>(p.a) << 24;
         }
       }
       next += static_cast<std::size_t>(v.tilesAcross) * tiles(v.height) * kTexelsPerTile;
@@ -107,34 +109,48 @@ TextureView TextureStore::view(const core::TextureSlot& slot) const {
   return v;
 }
 
-core::Vec4 TextureView::sample(const Vec2& meshUv) const {
+TexelFootprint TextureView::footprint(const Vec2& meshUv) const {
   const Vec2 uv = place(meshUv);
   const float x = wrapCoordinate(uv.x, wrapS) * static_cast<float>(width);
   const float y = wrapCoordinate(uv.y, wrapT) * static_cast<float>(height);
-  const auto fetch = [&](int column, int row) {
-    const std::uint32_t t = texels[tiledIndex(column, row, tilesAcross)];
+  TexelFootprint f;
+  if (nearest) {
+    const std::uint32_t one =
+        tiledColumn(wrapTexel(static_cast<int>(std::floor(x)), width, wrapS)) +
+        tiledRow(wrapTexel(static_cast<int>(std::floor(y)), height, wrapT), tilesAcross);
+    std::fill_n(f.at, 4, one);
+    return f;
+  }
+  const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
+  f.right = x - 0.5f - left;
+  f.down = y - 0.5f - top;
+  const int column = static_cast<int>(left), row = static_cast<int>(top);
+  const std::uint32_t x0 = tiledColumn(wrapTexel(column, width, wrapS));
+  const std::uint32_t x1 = tiledColumn(wrapTexel(column + 1, width, wrapS));
+  const std::uint32_t y0 = tiledRow(wrapTexel(row, height, wrapT), tilesAcross);
+  const std::uint32_t y1 = tiledRow(wrapTexel(row + 1, height, wrapT), tilesAcross);
+  f.at[0] = x0 + y0;
+  f.at[1] = x1 + y0;
+  f.at[2] = x0 + y1;
+  f.at[3] = x1 + y1;
+  return f;
+}
+
+core::Vec4 TextureView::mix(const TexelFootprint& f) const {
+  const auto fetch = [&](std::uint32_t at) {
+    const std::uint32_t t = texels[at];
     return _mm_setr_ps(decode[t & 255], decode[t >> 8 & 255], decode[t >> 16 & 255],
                        static_cast<float>(t >> 24) * (1 / 255.0f));
   };
-  const auto result = [](__m128 v) {
-    alignas(16) float out[4];
-    _mm_store_ps(out, v);
-    return core::Vec4(out[0], out[1], out[2], out[3]);
+  const auto between = [](__m128 a, __m128 b, __m128 share) {
+    return _mm_add_ps(a, _mm_mul_ps(share, _mm_sub_ps(b, a)));
   };
-  if (nearest) {
-    return result(fetch(wrapTexel(static_cast<int>(std::floor(x)), width, wrapS),
-                        wrapTexel(static_cast<int>(std::floor(y)), height, wrapT)));
-  }
-  const float left = std::floor(x - 0.5f), top = std::floor(y - 0.5f);
-  const __m128 fx = _mm_set1_ps(x - 0.5f - left), fy = _mm_set1_ps(y - 0.5f - top);
-  const int x0 = wrapTexel(static_cast<int>(left), width, wrapS);
-  const int x1 = wrapTexel(static_cast<int>(left) + 1, width, wrapS);
-  const int y0 = wrapTexel(static_cast<int>(top), height, wrapT);
-  const int y1 = wrapTexel(static_cast<int>(top) + 1, height, wrapT);
-  const auto mix = [](__m128 a, __m128 b, __m128 f) {
-    return _mm_add_ps(a, _mm_mul_ps(f, _mm_sub_ps(b, a)));
-  };
-  return result(mix(mix(fetch(x0, y0), fetch(x1, y0), fx), mix(fetch(x0, y1), fetch(x1, y1), fx), fy));
+  const __m128 right = _mm_set1_ps(f.right);
+  const __m128 upper = between(fetch(f.at[0]), fetch(f.at[1]), right);
+  const __m128 lower = between(fetch(f.at[2]), fetch(f.at[3]), right);
+  alignas(16) float out[4];
+  _mm_store_ps(out, between(upper, lower, _mm_set1_ps(f.down)));
+  return {out[0], out[1], out[2], out[3]};
 }
 
 }  // namespace saccade::raytrace

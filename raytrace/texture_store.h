@@ -11,6 +11,13 @@
 
 namespace saccade::raytrace {
 
+/// The texels that one bilinear sample reads and how they mix. Found apart from reading them, so that their
+/// way from memory passes behind other work.
+struct TexelFootprint {
+  std::uint32_t at[4] = {};   ///< upper left, upper right, lower left, lower right
+  float right = 0, down = 0;  ///< shares of the right and of the lower texels, [0, 1]
+};
+
 /// One texture as a material reads it. Points into a TextureStore.
 struct TextureView {
   const std::uint32_t* texels = nullptr;  ///< RGBA, R in the lowest byte; tiled
@@ -28,7 +35,14 @@ struct TextureView {
   Vec2 place(const Vec2& meshUv) const { return transformed ? uvMatrix * Vec3(meshUv, 1) : meshUv; }
   /// Bilinear (or nearest) RGBA at the mesh's uv, which KHR_texture_transform moves first; colour decoded to
   /// linear. v runs downwards. Beyond +-1e6 and for NaN, uv = 0.
-  core::Vec4 sample(const Vec2& meshUv) const;
+  core::Vec4 sample(const Vec2& meshUv) const { return mix(footprint(meshUv)); }
+  /// The two halves of sample().
+  TexelFootprint footprint(const Vec2& meshUv) const;
+  core::Vec4 mix(const TexelFootprint& f) const;
+  void prefetch(const TexelFootprint& f) const {
+    __builtin_prefetch(texels + f.at[0]);
+    __builtin_prefetch(texels + f.at[3]);
+  }
 };
 
 class TextureStore {

@@ -30,7 +30,10 @@ class Walk {
   Vec3 specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   /// Radiance along a ray of a delta.
   Vec3 incoming(const Ray& ray, int depth, float weight) {
-    Leg leg = send(ray);
+    Leg leg;
+    leg.ray = ray;
+    send(leg);
+    locate(leg, depth);
     return received(leg, depth, weight, nullptr);
   }
 
@@ -61,14 +64,21 @@ class Walk {
     bool met = false;
     float density = 0;  ///< rays times pdf; 0 when the lights were not sampled as well
     Vec3 factor{0};
+    std::optional<BaseLookup> base;  ///< where the maps' light is all that is wanted
   };
-  Leg send(const Ray& ray) {
-    Leg leg;
-    leg.ray = ray;
-    leg.met = world_.intersect(ray, leg.hit, counters_);
-    return leg;
+  void send(Leg& leg) {
+    leg.met = world_.intersect(leg.ray, leg.hit, counters_);
+    if (leg.met) world_.prefetch(leg.hit);
   }
-  /// Radiance that comes back along a leg. `rough` is null for rays of deltas.
+  /// The texels that received() will read set out. Best a while after send() and a while before received().
+  void locate(Leg& leg, int depth) const {
+    if (leg.met && showsBase(leg.hit, depth)) leg.base.emplace(world_, leg.hit, leg.ray.direction);
+  }
+  /// A diffuse hit, or the end of the specular chain.
+  bool showsBase(const Hit& hit, int depth) const {
+    return world_.diffuse(hit.object) || depth >= world_.recursionDepth();
+  }
+  /// Radiance that comes back along a leg, which is sent and located. `rough` is null for rays of deltas.
   Vec3 received(const Leg& leg, int depth, float weight, const RoughRay* rough);
   Vec3 scattered(const Surface& surface, const Vec3& direction, int depth, float weight);
   Vec3 deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);

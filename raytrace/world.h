@@ -67,6 +67,13 @@ struct alignas(64) TriangleShape {
   std::uint32_t space = 0;  ///< 0 the world; else one number for each instanced mesh
 };
 
+/// The illumination map's texels around one point, like TexelFootprint.
+struct MapFootprint {
+  std::uint32_t at[4] = {};
+  float right = 0, down = 0;
+  bool dark = true;  ///< no map on this side: irradiance is 0
+};
+
 /// An object that lies exactly on another.
 struct Twin {
   std::uint32_t met = 0;     ///< the object that rays meet
@@ -93,7 +100,16 @@ class World {
   void setMaps(const core::IlluminationMaps* maps);
   bool hasMaps() const { return !mapTexels_.empty(); }
   /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
-  Vec3 irradiance(const Vec2& lightmapUv, int layer) const;
+  Vec3 irradiance(const Vec2& lightmapUv, int layer) const {
+    return irradiance(mapFootprint(lightmapUv, layer));
+  }
+  /// The two halves of it.
+  MapFootprint mapFootprint(const Vec2& lightmapUv, int layer) const;
+  Vec3 irradiance(const MapFootprint& f) const;
+  void prefetch(const MapFootprint& f) const {
+    __builtin_prefetch(mapTexels_.data() + f.at[0]);
+    __builtin_prefetch(mapTexels_.data() + f.at[3]);
+  }
 
   /// Of the ray guard: smaller than kLargestRay where instances scale rays up.
   bool traceable(const Ray& ray) const { return raytrace::traceable(ray, largestRay_); }
@@ -110,6 +126,11 @@ class World {
   /// 1 = free, 0 = blocked; between for alphaMode blend in the way. tFar must lie before the light.
   float transmittance(const Ray& ray, RayCounters& counters) const;
 
+  /// What shading a hit will read first.
+  void prefetch(const Hit& hit) const {
+    __builtin_prefetch(&records_[hit.triangle]);
+    if (!diffuse(hit.object)) __builtin_prefetch(&shapes_[hit.triangle]);
+  }
   const TriangleRecord& record(std::uint32_t triangle) const { return records_[triangle]; }
   const TriangleShape& shape(std::uint32_t triangle) const { return shapes_[triangle]; }
   const CompiledMaterial& material(std::uint32_t index) const { return materials_[index]; }
@@ -146,8 +167,9 @@ class World {
   friend std::uint64_t replayRays(const World& world, const RayLog& log);
   struct Embree;
   enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4, kInstanced = 8 };
-  static constexpr int kMapTileX = 4, kMapTileY = 2;
-  std::size_t mapIndex(int x, int y, int layer) const;
+  static constexpr unsigned kMapTileX = 4, kMapTileY = 2;
+  static std::uint32_t mapColumn(unsigned x);
+  std::uint32_t mapRow(unsigned y, int layer) const;
   void buildRecords();
   void addRecords(std::uint32_t firstObject);
   void placeObjects();
