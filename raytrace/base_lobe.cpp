@@ -185,9 +185,27 @@ std::optional<LocalSample> BaseLobe::sampleWard(const Vec2& u) const {
   return s;
 }
 
+/// sample() where nothing is transmitted: S alone.
+std::optional<LocalSample> BaseLobe::sampleMirror(const Vec2& u) const {
+  const Vec3 h = delta_ ? Vec3(0, 0, 1) : ggx_.sampleVisible(v_, u);
+  const float vh = std::clamp(glm::dot(v_, h), 0.0f, 1.0f);
+  const Vec3 l = 2 * vh * h - v_;
+  std::optional<LocalSample> s;
+  if (l.z <= 0) return s;
+  s.emplace();
+  s->direction = l;
+  s->delta = delta_;
+  s->weight = facet(vh).reflect;
+  if (delta_) return s;
+  s->weight *= (1 + lambdaV_) / (1 + lambdaV_ + ggx_.lambda(l));
+  s->pdf = ggx_.d(h) / ((1 + lambdaV_) * 4 * v_.z);
+  return s;
+}
+
 std::optional<LocalSample> BaseLobe::sample(float uLobe, const Vec2& u) const {
   if (!any_) return std::nullopt;
   if (ward_) return sampleWard(u);
+  if (!(glass_ > 0)) return sampleMirror(u);
   const Vec3 h = delta_ ? Vec3(0, 0, 1) : ggx_.sampleVisible(v_, u);
   const float vh = std::clamp(glm::dot(v_, h), 0.0f, 1.0f);
   const Interface f = facet(vh);

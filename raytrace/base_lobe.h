@@ -67,6 +67,7 @@ class BaseLobe {
   bool crossing(const Vec3& l, Crossing& c) const;
   Vec3 refract(const Vec3& h, float cosVH) const;
   std::optional<LocalSample> sampleWard(const Vec2& u) const;
+  std::optional<LocalSample> sampleMirror(const Vec2& u) const;
 
   Vec3 v_{0, 0, 1};
   Ggx ggx_;

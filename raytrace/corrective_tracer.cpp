@@ -1,6 +1,7 @@
 #include "raytrace/corrective_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "raytrace/walk.h"
@@ -10,6 +11,8 @@ namespace {
 
 /// A point of the depth buffer that faces away is shaded as if seen this far above its horizon (a cosine).
 constexpr float kGrazing = 0.01f;
+/// Pixels whose primary rays go one after another before any of them is shaded.
+constexpr std::size_t kTogether = 16;
 
 /// The direction under which a point from the depth buffer is shaded: it must face the eye.
 Vec3 facingDirection(const Hit& hit, const Vec3& direction) {
@@ -52,7 +55,31 @@ CorrectiveTracer::Primary CorrectiveTracer::aim(const core::FrameSnapshot& frame
 
 core::Sample CorrectiveTracer::trace(const core::FrameSnapshot& frame, int x, int y, int level,
                                      RayCounters& counters) const {
-  const Primary primary = aim(frame, x, y, counters);
+  return shade(frame, x, y, aim(frame, x, y, counters), level, counters);
+}
+
+void CorrectiveTracer::trace(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels, int level,
+                             RayCounters& counters, std::vector<core::Sample>& samples) const {
+  std::array<Primary, kTogether> primaries;
+  while (!pixels.empty()) {
+    const auto now = pixels.first(std::min(pixels.size(), kTogether));
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      __builtin_prefetch(&frame.depth[frame.index(now[i].x, now[i].y)]);
+      primaries[i] = aim(frame, now[i].x, now[i].y, counters);
+      if (primaries[i].found) world_.prefetch(primaries[i].hit);
+    }
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (primaries[i].found) prefetchSurface(world_, primaries[i].hit);
+    }
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      samples.push_back(shade(frame, now[i].x, now[i].y, primaries[i], level, counters));
+    }
+    pixels = pixels.subspan(now.size());
+  }
+}
+
+core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, int x, int y, const Primary& primary,
+                                     int level, RayCounters& counters) const {
   const Vec3& direction = primary.direction;
   core::Sample sample;
   sample.x = x;

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/corrective/messages.h"
 #include "raytrace/world.h"
@@ -32,6 +34,10 @@ class CorrectiveTracer {
   /// The sample of pixel (x, y), whose id in the frame must not be 0. `level` is only a label. Any thread; no
   /// allocation. A correction that is not finite becomes 0 and is counted.
   core::Sample trace(const core::FrameSnapshot& frame, int x, int y, int level, RayCounters& counters) const;
+  /// The samples of many pixels, appended to `samples`: each has the bits that it has alone, but they come
+  /// sooner. What a pixel reads is sent for while other pixels' rays are traced.
+  void trace(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels, int level,
+             RayCounters& counters, std::vector<core::Sample>& samples) const;
 
   const World& world() const { return world_; }
   const CorrectiveOptions& options() const { return options_; }
@@ -44,6 +50,8 @@ class CorrectiveTracer {
     bool found = false;
     bool fromDepth = false;
   };
+  core::Sample shade(const core::FrameSnapshot& frame, int x, int y, const Primary& primary, int level,
+                     RayCounters& counters) const;
   Primary aim(const core::FrameSnapshot& frame, int x, int y, RayCounters& counters) const;
   /// What the base layer shows of a point.
   Vec3 shown(const Surface& surface) const;

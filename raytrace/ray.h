@@ -50,12 +50,18 @@ inline constexpr float kLargestRay = 1.8e18f;  ///< component of a ray that Embr
 /// tNear; a zero or subnormal direction has no meaning. False = the ray is a miss. `largest`: less than
 /// kLargestRay where instances scale rays up.
 inline bool traceable(const Ray& r, float largest = kLargestRay) {
+  const bool forward = (r.tNear >= 0) & (r.tNear <= r.tFar) & (r.tNear <= kLargestRay);
+  // Nearly all rays pass by two sums: no addend is larger, and of three that make one half one is no
+  // subnormal.
+  const float way = std::fabs(r.direction.x) + std::fabs(r.direction.y) + std::fabs(r.direction.z);
+  const float all = std::fabs(r.origin.x) + std::fabs(r.origin.y) + std::fabs(r.origin.z) + way;
+  if (forward & (way >= 0.5f) & (all <= largest)) return true;
   const auto in = [largest](float x) { return std::fabs(x) <= largest; };  // false for NaN
   const bool bounded = in(r.origin.x) & in(r.origin.y) & in(r.origin.z) & in(r.direction.x) &
                        in(r.direction.y) & in(r.direction.z);
   const auto counts = [](float x) { return std::fabs(x) >= std::numeric_limits<float>::min(); };
   const bool directed = counts(r.direction.x) | counts(r.direction.y) | counts(r.direction.z);
-  return bounded & directed & (r.tNear >= 0) & (r.tNear <= r.tFar) & (r.tNear <= kLargestRay);
+  return bounded & directed & forward;
 }
 
 }  // namespace saccade::raytrace

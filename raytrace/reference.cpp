@@ -18,10 +18,14 @@ TraceAllResult traceAll(const CorrectiveTracer& tracer, const core::FrameSnapsho
   std::vector<Tally> tallies(std::max(threads, 1));
   parallelRows(height, threads, progress, [&](int y, int worker) {
     Tally& tally = tallies[worker];
+    std::vector<core::Pixel> pixels;
     for (int x = 0; x < width; ++x) {
-      if (frame.idAt(x, y) == 0) continue;
-      const core::Sample s = tracer.trace(frame, x, y, core::Lattice::kMaxLevel, tally.counters);
-      result.corrections[frame.index(x, y)] = core::Vec4(s.correction, 1);
+      if (frame.idAt(x, y) != 0) pixels.push_back({x, y});
+    }
+    std::vector<core::Sample> samples;
+    tracer.trace(frame, pixels, core::Lattice::kMaxLevel, tally.counters, samples);
+    for (const core::Sample& s : samples) {
+      result.corrections[frame.index(s.x, s.y)] = core::Vec4(s.correction, 1);
       ++tally.traced;
       tally.fromDepth += s.fromDepth;
     }

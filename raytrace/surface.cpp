@@ -141,6 +141,18 @@ Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
 
 }  // namespace
 
+void prefetchSurface(const World& world, const Hit& hit) {
+  const TriangleRecord& record = world.record(hit.triangle);
+  const CompiledMaterial& m = world.materialOf(hit.object);
+  Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
+  if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
+  world.prefetch(world.mapFootprint(uv, 0));
+  uv = interpolate(record.uv0, hit.u, hit.v);
+  for (const TextureView* texture : {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture}) {
+    if (*texture) texture->prefetch(texture->footprint(textureUv(world, hit, uv, *texture)));
+  }
+}
+
 Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
   const TriangleRecord& record = world.record(hit.triangle);
   const TriangleShape& shape = world.shape(hit.triangle);

@@ -34,6 +34,9 @@ struct Surface {
   Vec3 emitted() const { return front || material->doubleSided ? point.emission : Vec3(0); }
 };
 
+/// Sends for the texels that makeSurface and its light from the maps will read. Any thread.
+void prefetchSurface(const World& world, const Hit& hit);
+
 /// All of it. `direction` is the ray's, unit. Any thread.
 Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
 

@@ -1,12 +1,14 @@
 #include "raytrace/tracer_pool.h"
 
+#include <array>
+#include <span>
 #include <utility>
 
 namespace saccade::raytrace {
 namespace {
 
 /// Pixels between two looks at the stop flag.
-constexpr int kPollPixels = 16;
+constexpr std::size_t kPollPixels = 16;
 
 }  // namespace
 
@@ -43,17 +45,20 @@ core::SampleBatch TracerPool::trace(const core::Job& job, std::uint8_t thread) {
   batch.epoch = job.frame->epoch;
   batch.sequence = job.sequence;
   RayCounters counters;
-  int untilPoll = kPollPixels;
-  bool stopped = false;
-  core::forEachPixel(job, [&](int x, int y) {
-    if (stopped) return;
-    if (--untilPoll == 0) {
-      untilPoll = kPollPixels;
-      stopped = stopping_.load(std::memory_order_relaxed);
+  std::array<core::Pixel, kPollPixels> pixels;
+  std::size_t waiting = 0;
+  const auto traceWaiting = [&] {
+    if (!stopping_.load(std::memory_order_relaxed)) {
+      tracer_.trace(*job.frame, std::span(pixels).first(waiting), job.begin.level, counters, batch.samples);
     }
-    batch.samples.push_back(tracer_.trace(*job.frame, x, y, job.begin.level, counters));
-    batch.samples.back().thread = thread;
+    waiting = 0;
+  };
+  core::forEachPixel(job, [&](int x, int y) {
+    pixels[waiting++] = {x, y};
+    if (waiting == pixels.size()) traceWaiting();
   });
+  traceWaiting();
+  for (core::Sample& s : batch.samples) s.thread = thread;
   samples_.fetch_add(batch.samples.size(), std::memory_order_relaxed);
   rays_.fetch_add(counters.rays, std::memory_order_relaxed);
   nonFinite_.fetch_add(counters.nonFinite, std::memory_order_relaxed);

@@ -191,7 +191,7 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, i
   // Inside a solid every light is behind its wall; only rays that leave find it.
   const bool lights = (bsdf.alpha() >= kNarrowAlpha || world_.lights().hasPunctual()) &&
                       !world_.lights().empty() && (surface.front || !surface.closed);
-  std::array<Leg, CorrectiveOptions::kMaxGlossyRays> legs;
+  std::array<std::optional<Leg>, CorrectiveOptions::kMaxGlossyRays> legs;
   int sent = 0;
   for (int i = 0; i < count; ++i) {
     Vec2 u = sampler_.next2D();
@@ -199,21 +199,20 @@ Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, i
     const float uLobe = bsdf.transmits() || bsdf.layered() ? sampler_.next1D() : 0;
     const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, lobes);
     if (!s) continue;
-    Leg& leg = legs[sent];
-    leg.ray = surface.leave(s->direction);
-    leg.density = lights && !s->delta ? s->pdf * rays : 0;
-    leg.factor = s->weight / rays;
-    send(leg);
-    if (sent > 0) locate(legs[sent - 1], depth + 1);
-    ++sent;
+    legs[sent++].emplace(surface.leave(s->direction), lights && !s->delta ? s->pdf * rays : 0.0f,
+                         s->weight / rays);
+  }
+  for (int i = 0; i < sent; ++i) {
+    send(*legs[i]);
+    if (i > 0) locate(*legs[i - 1], depth + 1);
   }
   LightChoice choice;
   if (lights) choice = world_.lights().choose(surface.position);
-  if (sent > 0) locate(legs[sent - 1], depth + 1);
+  if (sent > 0) locate(*legs[sent - 1], depth + 1);
   Vec3 sum(0);
   if (lights) sum = lightSample(surface, bsdf, lobes, choice, rays, weight);
   for (int i = 0; i < sent; ++i) {
-    const Leg& leg = legs[i];
+    const Leg& leg = *legs[i];
     const RoughRay rough{&choice, leg.density};
     const Following following(*this, surface, leg.ray.direction);
     sum += leg.factor *

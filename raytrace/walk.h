@@ -30,8 +30,7 @@ class Walk {
   Vec3 specular(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   /// Radiance along a ray of a delta.
   Vec3 incoming(const Ray& ray, int depth, float weight) {
-    Leg leg;
-    leg.ray = ray;
+    Leg leg(ray);
     send(leg);
     locate(leg, depth);
     return received(leg, depth, weight, nullptr);
@@ -59,11 +58,12 @@ class Walk {
 
   /// A ray and what it met.
   struct Leg {
+    explicit Leg(const Ray& r, float d = 0, const Vec3& f = Vec3(1)) : ray(r), density(d), factor(f) {}
     Ray ray;
-    Hit hit;
+    float density;  ///< rays times pdf; 0 when the lights were not sampled as well
+    Vec3 factor;    ///< of what it brings back
     bool met = false;
-    float density = 0;  ///< rays times pdf; 0 when the lights were not sampled as well
-    Vec3 factor{0};
+    Hit hit;
     std::optional<BaseLookup> base;  ///< where the maps' light is all that is wanted
   };
   void send(Leg& leg) {

@@ -18,9 +18,9 @@ std::uint64_t correctiveLoop(const raytrace::CorrectiveTracer& tracer, const cor
   std::uint64_t samples = 0;
   while (const auto job = regions.tryPop()) {
     core::SampleBatch batch;
-    core::forEachPixel(*job, [&](int x, int y) {
-      batch.samples.push_back(tracer.trace(*frame, x, y, job->begin.level, counters));
-    });
+    std::vector<core::Pixel> pixels;
+    core::forEachPixel(*job, [&](int x, int y) { pixels.push_back({x, y}); });
+    tracer.trace(*frame, pixels, job->begin.level, counters, batch.samples);
     samples += batch.samples.size();
   }
   return samples;

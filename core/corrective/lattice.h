@@ -19,6 +19,10 @@ struct PixelBox {
   bool operator==(const PixelBox&) const = default;
 };
 
+struct Pixel {
+  int x = 0, y = 0;
+};
+
 class Lattice {
  public:
   static constexpr int kMaxLevel = 7;  ///< level 7 = every pixel; level 1 has spacing sqrt(5)^6 = 125

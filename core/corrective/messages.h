@@ -1,6 +1,7 @@
 // What the threads send each other. Everything carries the camera epoch. Immutable once sent.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -77,12 +78,24 @@ struct Job {
   float priority = 0;
 };
 
-/// Calls visit(x, y) for each pixel of the job: lattice points on the object's mask.
+/// Calls visit(x, y) for each pixel of the job: lattice points on the object's mask. The mask is read a few
+/// points behind the walk: points lie far apart, and each waits for memory.
 template <class Visit>
 void forEachPixel(const Job& job, Visit&& visit) {
-  walkLattice(job.frame->extents[job.id].box, job.begin, job.points, job.omitCoarser, [&](int x, int y) {
-    if (job.frame->idAt(x, y) == job.id) visit(x, y);
+  constexpr std::size_t kBehind = 8;
+  const FrameSnapshot& frame = *job.frame;
+  Pixel pending[kBehind];
+  std::size_t walked = 0;
+  const auto look = [&](const Pixel& p) {
+    if (frame.idAt(p.x, p.y) == job.id) visit(p.x, p.y);
+  };
+  walkLattice(frame.extents[job.id].box, job.begin, job.points, job.omitCoarser, [&](int x, int y) {
+    __builtin_prefetch(&frame.baseAndId[frame.index(x, y)]);
+    Pixel& slot = pending[walked % kBehind];
+    if (walked++ >= kBehind) look(slot);
+    slot = {x, y};
   });
+  for (std::size_t i = walked - std::min(walked, kBehind); i < walked; ++i) look(pending[i % kBehind]);
 }
 
 }  // namespace saccade::core
