@@ -346,6 +346,34 @@ TEST(TracerPool, AWorkersExceptionReachesTheOwner) {
   EXPECT_THROW(wait(), core::Error);
 }
 
+TEST(CorrectiveTracer, PixelsTracedTogetherHaveTheBitsTheyHaveAlone) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 40, 40);
+  std::vector<core::Pixel> pixels;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      if (frame->idAt(x, y) != 0) pixels.push_back({x, y});
+    }
+  }
+  RayCounters together, alone;
+  std::vector<core::Sample> samples;
+  tracer.trace(*frame, pixels, 7, together, samples);
+  ASSERT_EQ(samples.size(), pixels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const core::Sample s = tracer.trace(*frame, pixels[i].x, pixels[i].y, 7, alone);
+    EXPECT_EQ(samples[i].x, pixels[i].x);
+    EXPECT_EQ(samples[i].y, pixels[i].y);
+    EXPECT_EQ(samples[i].correction, s.correction);
+    EXPECT_EQ(samples[i].position, s.position);
+    EXPECT_EQ(samples[i].normal, s.normal);
+    EXPECT_EQ(samples[i].viewDepth, s.viewDepth);
+  }
+  EXPECT_EQ(together.rays, alone.rays);
+  EXPECT_NE(pixels.size() % 16, 0u);  // the last group is not full
+}
+
 TEST(RayLog, HoldsEveryRayAndReplaysTheirHits) {
   const SceneMaker m = room();
   const World world(m.scene, planOf());
