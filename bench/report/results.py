@@ -43,10 +43,21 @@ def check(docs: Path) -> list[str]:
     template = docs / "results.md.in"
     wrong = literal_numbers(template)
     try:
-        text = render(template, book_of(docs))
+        book = book_of(docs)
+        text = render(template, book)
     except RecordError as error:
         return [*wrong, str(error)]
-    return wrong + difference(docs / "results.md", text)
+    return wrong + list(dict.fromkeys(book.complaints)) + difference(docs / "results.md", text)
+
+
+def make(docs: Path) -> None:
+    """Writes the page, and warns of what somebody has to write."""
+    book = book_of(docs)
+    page = docs / "results.md"
+    page.write_text(render(docs / "results.md.in", book), encoding="utf-8")
+    for line in dict.fromkeys(book.complaints):
+        print(f"saccade: warning: {line}", file=sys.stderr)
+    print(page)
 
 
 def write_records(path: Path, runs: list[Any], records: list[dict[str, Any]]) -> None:
@@ -118,9 +129,7 @@ def main() -> int:
             return 1 if wrong else 0
         if options.take:
             print("taken over: " + (", ".join(take(options.docs, options.take)) or "nothing that the page shows"))
-        page = options.docs / "results.md"
-        page.write_text(render(options.docs / "results.md.in", book_of(options.docs)), encoding="utf-8")
-        print(page)
+        make(options.docs)
     except (RecordError, OSError) as error:
         print(f"saccade: error: {error}", file=sys.stderr)
         return 1

@@ -154,6 +154,7 @@ class Results(unittest.TestCase):
 
     def test_a_missed_goal_needs_a_cause(self) -> None:
         self.write(TEMPLATE, [rays("gallery", 0.42), goal(0.5, note="")])
+        self.make()
         self.refused("rays/gallery misses the goal goal/rays; write the cause")
 
     def test_a_goal_without_measurement_says_so(self) -> None:
