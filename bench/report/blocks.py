@@ -40,7 +40,8 @@ METRICS: dict[str, str] = {
 }
 
 _PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".svg")
-_REMARKS = ("status", "result")  # labels that say how it went, not what was measured
+_PLAIN_LABELS = ("method", "renderer", "what", "shows", "case", "test", "scene", "step")  # whose values name themselves
+REMARKS = ("status", "result")  # labels that say how it went, not what was measured
 _LABEL_ORDER = ("number", "scene", "path", "renderer", "method", "order", "cache", "attention")
 # What stands under a picture; a record without any of these shows all it has.
 _PICTURE_METRICS = ("relmse", "psnr", "flip", "flip_salient", "seconds", "frame_p95")
@@ -145,9 +146,9 @@ def variant_name(record: Record, names: Sequence[str]) -> str:
     """A record's curve or row by the labels that matter: "corrective, order task"."""
     words = []
     for name in names:
-        if name in record.labels and name not in _REMARKS:
+        if name in record.labels and name not in REMARKS:
             value = record.labels[name]
-            words.append(value if name in ("method", "renderer", "what", "test", "scene") else f"{name} {value}")
+            words.append(value if name in _PLAIN_LABELS else f"{name} {value}")
     return ", ".join(words)
 
 

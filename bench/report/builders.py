@@ -7,6 +7,7 @@ from collections import Counter
 from typing import Callable, Sequence
 
 from blocks import (
+    REMARKS,
     Block,
     Cell,
     Context,
@@ -295,8 +296,9 @@ def hard_cases(context: Context) -> list[Block]:
 
 
 def plain(context: Context) -> list[Block]:
-    """What any experiment gets: its records as a table, and its pictures."""
-    return [
-        record_table(context.records, "All numbers, median and range"),
-        *galleries(context, context.records, "Pictures"),
-    ]
+    """What any experiment gets: its records as tables, one for each set of labels, and its pictures."""
+    families: dict[tuple[str, ...], list[Record]] = {}
+    for record in context.records:
+        families.setdefault(tuple(name for name in record.labels if name not in REMARKS), []).append(record)
+    tables = [record_table(group, "All numbers, median and range") for group in families.values()]
+    return [*tables, *galleries(context, context.records, "Pictures")]
