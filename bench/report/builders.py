@@ -45,13 +45,15 @@ def _stem(*words: str) -> str:
 
 
 def _cost(record: Record) -> tuple[float, tuple[float, float] | None] | None:
-    """What was spent: a frame's budget (ms), samples, seconds as measured or else as granted; None if nothing says."""
+    """What was spent: a frame's budget (ms) or samples as granted, seconds or a frame's time (ms) as measured, seconds as
+    granted; None if nothing says."""
     for amount in ("budget_ms", "samples"):
         if amount in record.at:
             return record.at[amount], None
-    measured = record.values.get("seconds")
-    if measured:
-        return measured.median, (measured.min, measured.max)
+    for measured in ("seconds", "frame_p50"):
+        if measured in record.values:
+            value = record.values[measured]
+            return value.median, (value.min, value.max)
     return (record.at["seconds"], None) if "seconds" in record.at else None
 
 

@@ -47,7 +47,12 @@ SECTIONS: dict[str, Section] = {
     "moving": Section(
         "Moving camera",
         "The camera walks a path and every frame has a deadline: how far off are the frames, and are they in time?",
-        partial(error_against_cost, metrics=_MOVING, x_label="budget of a frame (ms)", timing=_TIMES),
+        partial(
+            error_against_cost,
+            metrics=_MOVING,
+            x_label="budget of a frame, or its time without one (ms)",
+            timing=_TIMES,
+        ),
     ),
     "peers": Section(
         "Beside other renderers",

@@ -123,6 +123,10 @@ def moving() -> list[dict[str, Any]]:
                     loaded=budget == 8,
                 )
             )
+    free = {**_errors(0.05), "frame_p50": value(300, "time", "ms")}
+    found.append(
+        record("moving/gallery/raytrace", {"scene": "gallery", "path": "walk", "method": "raytrace"}, {}, free)
+    )
     found.append(
         record(
             "moving/gallery/reference",

@@ -139,6 +139,14 @@ class Parts(unittest.TestCase):
         record.values["seconds"] = records.Value(1.5, 1.4, 1.6, 5, "s", "time")
         self.assertEqual(builders.point(record, "relmse").x, 1.5)
 
+    def test_a_frame_without_a_deadline_stands_where_its_time_is(self) -> None:
+        record = self.record(method="raytrace")
+        del record.at["seconds"]
+        record.values["frame_p50"] = records.Value(300, 290, 310, 5, "ms", "time")
+        self.assertEqual(builders.point(record, "relmse").x, 300)
+        record.at["budget_ms"] = 66.0
+        self.assertEqual(builders.point(record, "relmse").x, 66)
+
     def test_up_to_two_dozen_curves_look_different(self) -> None:
         looks = [tuple(look.values()) for look in styles([f"curve {i}" for i in range(24)]).values()]
         self.assertEqual(len(set(map(str, looks))), 24)
