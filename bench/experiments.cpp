@@ -5,6 +5,7 @@
 #include "bench/many_lights/many_lights.h"
 #include "bench/moving/moving.h"
 #include "bench/peers/peers.h"
+#include "bench/quality/quality.h"
 #include "bench/rays/rays.h"
 #include "bench/still/still.h"
 
@@ -33,6 +34,10 @@ const std::vector<Experiment>& allExperiments() {
        "How good is the picture while the camera moves, at 8 to 125 ms a frame?",
        {Suite::quick, Suite::paper},
        &measureMoving},
+      {"quality",
+       "How far is the converged picture from the path-traced one, and what is the rest made of?",
+       {},
+       &measureQuality},
       {"peers",
        "How soon is which renderer as near to the truth: Blender's Cycles, our path tracer, our corrections?",
        {},

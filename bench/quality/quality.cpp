@@ -1,21 +1,98 @@
-// How far is the converged picture from the path-traced one, and what is the rest made of?
-// For a scene at 256x256: `corrective --converge` against `path`, as FLIP and relative MSE, then with one
-// cause after another taken away: glossy noise (64 sub-samples), aliasing (rendered four times as large and
-// box-filtered down), and the base layer alone against the path tracer's diffuse transport, on diffuse pixels
-// (the maps). Usage: bench_quality SCENE.glb [PATH_SPP] [QUALITY]
-#include <cstdlib>
+#include "bench/quality/quality.h"
 
-#include "bench/common.h"
+#include "bench/harness/method.h"
+#include "bench/reference/reference.h"
 #include "core/composite.h"
 #include "core/metrics/comparison.h"
-#include "raytrace/path_tracer.h"
-#include "raytrace/reference.h"
 
 namespace saccade::bench {
 namespace {
 
 constexpr int kSide = 256;
 constexpr int kOversampling = 4;
+constexpr Confidence kConfidence{.relmse = 2e-3, .capSeconds = 100};
+constexpr Confidence kQuickConfidence{.relmse = 0.02, .capSeconds = 20};
+
+/// A scene's pictures. Main thread only.
+class Pictures {
+ public:
+  Pictures(const std::string& file, const Session& session)
+      : stage_(openStage(file, "medium", session.options().seed, session.stop())), session_(session) {}
+
+  const Stage& stage() const { return *stage_; }
+  const core::Camera& camera() const { return stage_->workspace->scene.cameras[0]; }
+
+  core::ImageRgb converged(int side, int subSamples) const {
+    app::FrameLoopOptions options;
+    options.threads = stage_->cores;
+    options.seed = stage_->seed;
+    options.corrective.samplesPerPixel = subSamples;
+    const auto loop = pinnedLoop(*stage_, options);
+    loop->step(camera(), {side, side}, app::FrameBudget::untilConverged(), session_.stop());
+    session_.checkStop();
+    return loop->linear();
+  }
+
+  core::FramePtr base() const {
+    return stage_->gl->renderer->render(stage_->view(camera(), {kSide, kSide}), 1,
+                                        app::CorrectiveOptions{}.nMin);
+  }
+
+ private:
+  std::unique_ptr<Stage> stage_;
+  const Session& session_;
+};
+
+/// With the non-diffuse pixels black, so that only the maps are compared.
+core::ImageRgb diffuseOnly(const core::FrameSnapshot& frame, core::ImageRgb image) {
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      if (frame.idAt(x, y) != 0) image.at(x, y) = core::Vec3(0);
+    }
+  }
+  return image;
+}
+
+/// Adds the records of one scene.
+class Steps {
+ public:
+  Steps(Session& session, std::string scene) : session_(session), scene_(std::move(scene)) {}
+
+  void add(const std::string& step, std::map<std::string, Value> values) {
+    Record record;
+    record.key = "quality/" + scene_ + "/" + step;
+    record.labels = {{"scene", scene_}, {"step", step}};
+    record.values = std::move(values);
+    session_.add(record, nullptr);
+  }
+  void add(const std::string& step, const core::Comparison& c) {
+    session_.say("quality: " + scene_ + ", " + step);
+    add(step, {{"flip", Value::error(c.flip)}, {"relmse", Value::error(c.relmse)}});
+  }
+
+ private:
+  Session& session_;
+  std::string scene_;
+};
+
+void measureScene(Session& session, const std::string& file) {
+  const Pictures pictures(file, session);
+  const app::Workspace& workspace = *pictures.stage().workspace;
+  const Reference reference = referenceOf(workspace, {pictures.camera(), {kSide, kSide}},
+                                          session.quick() ? kQuickConfidence : kConfidence, session.stop());
+  Steps steps(session, pictures.stage().name);
+  steps.add("reference-noise", reference.own);
+  steps.add("corrective", core::compareLinear(reference.radiance, pictures.converged(kSide, 1)));
+  steps.add("without-glossy-noise", core::compareLinear(reference.radiance, pictures.converged(kSide, 64)));
+  const core::ImageRgb large = pictures.converged(kSide * kOversampling, 4);
+  steps.add("without-aliasing", core::compareLinear(reference.radiance, boxFiltered(large, kOversampling)));
+  const core::FramePtr frame = pictures.base();
+  const core::ImageRgb base = core::compositeLinear(kSide, kSide, frame->baseAndId, {});
+  steps.add("maps", core::compareLinear(diffuseOnly(*frame, reference.radiance), diffuseOnly(*frame, base)));
+  steps.add("left-out", {{"albedo", Value::error(workspace.plan.diffuseEnergyLeftOut)}});
+}
+
+}  // namespace
 
 core::ImageRgb boxFiltered(const core::ImageRgb& large, int factor) {
   core::ImageRgb small(large.width() / factor, large.height() / factor);
@@ -26,78 +103,11 @@ core::ImageRgb boxFiltered(const core::ImageRgb& large, int factor) {
   return small;
 }
 
-struct Renderer {
-  const app::Workspace& workspace;
-  app::Headless gl;
-  core::Camera camera;
-  int threads;
-
-  core::FramePtr base(int side) {
-    return gl.renderer->render(core::View(camera, side, side, workspace.scene.bounds), 1, 10);
-  }
-
-  core::ImageRgb converged(int side, int subSamples) {
-    app::FrameLoopOptions options;
-    options.threads = threads;
-    options.corrective.samplesPerPixel = subSamples;
-    app::FrameLoop loop(workspace, *gl.renderer, options);
-    loop.step(camera, {side, side}, app::FrameBudget::untilConverged());
-    return loop.linear();
-  }
-
-  core::ImageRgb path(int samples, raytrace::Transport transport) {
-    raytrace::PathOptions options;
-    options.samplesPerPixel = samples;
-    options.transport = transport;
-    options.threads = threads;
-    app::ProgressBar bar("path tracing");
-    return raytrace::tracePaths(*workspace.world, core::View(camera, kSide, kSide, workspace.scene.bounds),
-                                options, {[&](double f) { bar.show(f); }, app::interruptToken()})
-        .radiance;
-  }
-};
-
-void print(const char* what, const core::Comparison& c) {
-  std::printf("%-64s FLIP %.4f  relative MSE %.5f\n", what, c.flip, c.relmse);
+void measureQuality(Session& session) {
+  std::vector<std::string> scenes = session.options().scenes;
+  if (scenes.empty()) scenes = {bundledScene("cornell"), bundledScene("table"), bundledScene("gallery")};
+  if (session.quick()) scenes.resize(1);
+  for (const std::string& file : scenes) measureScene(session, file);
 }
 
-/// Both pictures with the non-diffuse pixels black, so that only the maps are compared.
-core::ImageRgb diffuseOnly(const core::FrameSnapshot& frame, core::ImageRgb image) {
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      if (frame.idAt(x, y) != 0) image.at(x, y) = core::Vec3(0);
-    }
-  }
-  return image;
-}
-
-int run(int argc, char** argv) {
-  app::setupLog();
-  printProvenance(argc, argv);
-  const std::string scene = argc > 1 ? argv[1] : bundledScene("cornell");
-  const int spp = argc > 2 ? std::atoi(argv[2]) : 1024;
-  const auto workspace = openScene(scene, argc > 3 ? argv[3] : "medium");
-  Renderer r{*workspace, app::Headless({}, *workspace), workspace->scene.cameras[0],
-             static_cast<int>(std::thread::hardware_concurrency())};
-  const core::ImageRgb reference = r.path(spp, raytrace::Transport::all);
-  const core::ImageRgb half = r.path(std::max(1, spp / 4), raytrace::Transport::all);
-  std::printf("%s, %dx%d, reference of %d samples a pixel\n", scene.c_str(), kSide, kSide, spp);
-  print("the reference's own noise (a quarter of its samples against it)",
-        core::compareLinear(reference, half));
-  print("corrective --converge", core::compareLinear(reference, r.converged(kSide, 1)));
-  print("  without glossy noise (--spp 64)", core::compareLinear(reference, r.converged(kSide, 64)));
-  const core::ImageRgb smooth = boxFiltered(r.converged(kSide * kOversampling, 4), kOversampling);
-  print("  without aliasing either (4x4 as large, box filter)", core::compareLinear(reference, smooth));
-  const core::FramePtr frame = r.base(kSide);
-  const core::ImageRgb base = core::compositeLinear(kSide, kSide, frame->baseAndId, {});
-  print("maps: base against all light, diffuse pixels only",
-        core::compareLinear(diffuseOnly(*frame, reference), diffuseOnly(*frame, base)));
-  std::printf("lobes left out: mean albedo %.4f of the objects treated as diffuse\n",
-              workspace->plan.diffuseEnergyLeftOut);
-  return 0;
-}
-
-}  // namespace
 }  // namespace saccade::bench
-
-int main(int argc, char** argv) { return saccade::bench::run(argc, argv); }
