@@ -183,6 +183,7 @@ def value_cell(record: Record, metric: str) -> Cell:
 def record_table(records: Sequence[Record], caption: str, labels: Sequence[str] | None = None) -> TableBlock:
     """One row a record: labels that differ, where it was measured, and all metrics as median and range."""
     names = list(labels) if labels is not None else (varying(records) or list(records[0].labels))
+    names += [name for name in REMARKS if name not in names and any(name in record.labels for record in records)]
     metrics = metrics_of(records)
     with_at = any(record.at for record in records)
     with_note = any(record.note for record in records)

@@ -161,8 +161,7 @@ def _other_tables(records: Sequence[Record], place: str) -> list[Block]:
     """What is no point of a curve, a table for each set of metrics."""
     families: dict[tuple[str, ...], list[Record]] = {}
     for record in records:
-        if record.values:
-            families.setdefault(tuple(metrics_of([record])), []).append(record)
+        families.setdefault(tuple(metrics_of([record])), []).append(record)
     caption = f"{place}: further figures".lstrip(": ")
     return [record_table(group, caption) for group in families.values()]
 

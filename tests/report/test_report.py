@@ -105,6 +105,7 @@ class WholePage(unittest.TestCase):
     def test_what_is_no_point_of_a_curve_keeps_its_table(self) -> None:
         self.assertIn("flip over base", self.page.text)
         self.assertIn("gallery, walk: further figures", self.page.text)
+        self.assertIn("not installed: no curve of its", self.page.text)
 
     def test_head_names_machine_commit_seed_and_command(self) -> None:
         for words in ("Some Processor, 2 cores, 8 GiB", "abc1234", "saccade bench quick -o out", "embree 3.13.5"):
