@@ -76,6 +76,9 @@ struct Method {
   std::function<void(Stage&, const StillTask&, const std::function<void(Point)>& take)> still;
   /// Null: cannot walk.
   std::function<std::unique_ptr<Walker>(Stage&, app::ImageSize)> walk;
+  /// The picture after its first so many samples, the same on any machine. Null: has no order of samples, or
+  /// only that of another variant.
+  std::function<Point(Stage&, const StillTask&, std::uint64_t samples)> afterSamples;
 
   /// "corrective-attention": what keys hold.
   std::string key() const { return variant.empty() ? name : name + "-" + variant; }

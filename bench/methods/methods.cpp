@@ -34,6 +34,9 @@ Method corrective(const NamedOrder& order, bool cache, const char* weight) {
     method.still = [=](Stage& stage, const StillTask& task, const TakePoint& take) {
       stillCorrective(stage, task, take, attention, usual);
     };
+    method.afterSamples = [=](Stage& stage, const StillTask& task, std::uint64_t samples) {
+      return stillAfterSamples(stage, task, attention, samples);
+    };
   }
   return method;
 }

@@ -88,6 +88,16 @@ void stillCorrective(Stage& stage, const StillTask& task, const TakePoint& take,
   }
 }
 
+Point stillAfterSamples(Stage& stage, const StillTask& task, const attention::AttentionOptions& attention,
+                        std::uint64_t samples) {
+  app::CorrectiveOptions options;
+  options.attention = attention;
+  Point point;
+  point.setting = std::to_string(samples) + " samples";
+  drawCorrective(stage, task, options, app::FrameBudget::firstSamples(samples), point);
+  return point;
+}
+
 void stillRaytrace(Stage& stage, const StillTask& task, const TakePoint& take) {
   for (const int subSamples : kSubSamples) {
     const raytrace::CorrectiveTracer tracer(*stage.workspace->world,

@@ -22,6 +22,10 @@ void stillBase(Stage& stage, const StillTask& task, const TakePoint& take);
 void stillCorrective(Stage& stage, const StillTask& task, const TakePoint& take,
                      const attention::AttentionOptions& attention, bool toTheEnd);
 
+/// The frame loop after its first `samples` samples, or all of them where there are fewer.
+Point stillAfterSamples(Stage& stage, const StillTask& task, const attention::AttentionOptions& attention,
+                        std::uint64_t samples);
+
 /// Every correction in scanline order on all cores, with 1, 4, 16, 64 sub-samples a pixel.
 void stillRaytrace(Stage& stage, const StillTask& task, const TakePoint& take);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/reference/grade.h"
+#include "bench/still/still.h"
 #include "core/error.h"
 #include "tests/unit/core/temporary_folder.h"
 
@@ -73,6 +74,44 @@ TEST(Stills, BudgetsEndWhereThePictureHasConverged) {
     EXPECT_GT(points[i].budgetMs, points[i - 1].budgetMs);
     EXPECT_GE(points[i].samples, points[i - 1].samples);
   }
+}
+
+TEST(Stills, FewestSamplesOfAThreshold) {
+  for (const std::uint64_t threshold : {101, 150, 163, 200}) {
+    const std::uint64_t found =
+        fewestSamples(100, 200, [&](std::uint64_t samples) { return samples >= threshold; });
+    EXPECT_GE(found, threshold);
+    EXPECT_LE(found, threshold + 100 / 32 + 1);
+  }
+  EXPECT_EQ(fewestSamples(0, 1, [](std::uint64_t) { return false; }), 1u);
+}
+
+// The point of the paper's section 3: what a person looks at first comes first. Counts, not times.
+TEST(Stills, AttentionNeedsAFractionOfTheSamplesThatOtherOrdersNeed) {
+  const auto all = stillAfterSamples(cornell(), task(0), AttentionOptions{}, 48 * 40);
+  const Grader converged(all.linear);
+  const double half = converged.grade(stillAfterSamples(cornell(), task(0), {}, 0).linear).flipSalient / 2;
+  const auto samplesToHalf = [&](attention::Order order) {
+    AttentionOptions attention;
+    attention.order = order;
+    return fewestSamples(0, all.samples, [&](std::uint64_t samples) {
+      return converged.grade(stillAfterSamples(cornell(), task(0), attention, samples).linear).flipSalient <=
+             half;
+    });
+  };
+  const std::uint64_t attention = samplesToHalf(attention::Order::attention);
+  EXPECT_LT(2 * attention, samplesToHalf(attention::Order::random));
+  EXPECT_LT(2 * attention, samplesToHalf(attention::Order::scanline));
+  EXPECT_LT(4 * attention, all.samples);
+}
+
+TEST(Stills, SampleBudgetsGiveTheSamePictureOnAnyNumberOfThreads) {
+  const Point inlined = stillAfterSamples(cornell(), task(0), AttentionOptions{}, 100);
+  EXPECT_EQ(inlined.samples, 100u);
+  cornell().tracers = 2;
+  EXPECT_EQ(stillAfterSamples(cornell(), task(0), AttentionOptions{}, 100).linear.pixels(),
+            inlined.linear.pixels());
+  cornell().tracers = 0;
 }
 
 TEST(Stills, TheLongestPointIsTheLast) {
