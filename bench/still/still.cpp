@@ -61,15 +61,11 @@ std::string keyOf(const std::string& setting) {
   return key;
 }
 
-std::vector<double> perSecond(const std::vector<double>& amounts, const std::vector<double>& seconds) {
-  return ratios(amounts, seconds);
-}
-
 void addSpeed(Record& record, const Series& s) {
   record.values["seconds"] = Value::seconds(s.seconds);
   if (s.rays.front() == 0) return;
-  record.values["samples_per_s"] = Value::rate(perSecond(s.samples, s.seconds));
-  record.values["rays_per_s"] = Value::rate(perSecond(s.rays, s.seconds));
+  record.values["samples_per_second"] = Value::rate(ratios(s.samples, s.seconds));
+  record.values["rays_per_second"] = Value::rate(ratios(s.rays, s.seconds));
   if (s.budgetMs > 0) return;
   record.values["samples"] = Value::count(s.samples.front());
   record.values["rays"] = Value::count(s.rays.front(), Better::lower);
