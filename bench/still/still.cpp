@@ -124,12 +124,15 @@ void measure(Session& session, const StillView& view) {
               " methods and variants, " + std::to_string(repeats) + " repeats");
   const StillTask task{app::chooseCamera(stage->workspace->scene, {}), view.size, view.longestSeconds,
                        session.stop()};
+  StillTask shortest = task;  // long points warm nothing up that short ones do not
+  shortest.longestSeconds = 0;
   const LoadWatch watch;
   alternate(static_cast<int>(runs.size()), repeats, session.stop(), [&](int i, int round) {
     MethodRun& run = runs[i];
+    const bool warmUp = round < 0;
     const PeakMemory peak;
-    run.method.still(*stage, task, [&](Point point) {
-      if (round >= 0) run.take(std::move(point), grader);
+    run.method.still(*stage, warmUp ? shortest : task, [&](Point point) {
+      if (!warmUp) run.take(std::move(point), grader);
     });
     run.peakBytes = std::max(run.peakBytes, peak.bytes());
   });

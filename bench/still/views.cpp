@@ -7,7 +7,7 @@ StillView quickView(const std::string& file) {
   return {file, "preview", {128, 128}, {.relmse = 5e-3, .capSeconds = 15}, 0.25};
 }
 StillView paperView(const std::string& file) {
-  return {file, "medium", {256, 256}, {.relmse = 3e-3, .capSeconds = 140}, 1};
+  return {file, "medium", {256, 256}, {.relmse = 3e-3, .capSeconds = 140}, 0.8};
 }
 StillView fullView(const std::string& file) {
   return {file, "medium", {512, 512}, {.relmse = 1e-3, .capSeconds = 900}, 20};
