@@ -83,7 +83,8 @@ void LiveError::setExposure(float ev) {
 }
 
 void LiveError::keep(const RestingPicture& picture) {
-  auto kept = std::make_shared<Picture>(picture.seconds, ofNonDiffuse(*frame_, picture.corrections));
+  auto kept =
+      std::make_shared<Picture>(Picture{picture.seconds, ofNonDiffuse(*frame_, picture.corrections), {}});
   {
     const std::lock_guard lock(mutex_);
     pictures_.add(picture.seconds, std::move(kept));
