@@ -198,26 +198,33 @@ class Goal:
         self._limit = record.values[self._side]
 
     def row(self) -> dict[str, str]:
-        """what, ours, goal, ratio, verdict, cause (empty where the goal is met), source."""
+        """what, ours, goal, ratio, verdict, cause (empty where the goal is met)."""
         labels, how = self._record.labels, self._record.labels.get("format", "")
         sign = "≥" if self._side == "least" else "≤"
         goal = self._book.marked(self._record, f"{sign} {formatted(self._limit, how)}")
-        row = {"what": labels.get("what", self._record.key), "goal": goal, "source": self._record.run.source}
+        row = {"what": labels.get("what", self._record.key), "goal": goal, "ratio": "–"}
         found = self._matching()
         if not found:
-            return row | {"ours": "–", "ratio": "–", "verdict": "not measured", "cause": ""}
+            return row | self._without_figure()
         record, value = found[0]
         missed = value.median < self._limit.median if self._side == "least" else value.median > self._limit.median
-        if missed and not self._record.note:
+        row["ours"] = self._book.figure(f"{record.key}:{self._metric()}", how) + self._place(record, len(found))
+        if self._limit.median:
+            row["ratio"] = number(value.median / self._limit.median, ".2f")
+        return row | (self._missed(record) if missed else {"verdict": "met", "cause": ""})
+
+    def _without_figure(self) -> dict[str, str]:
+        """Nothing was measured, or what was measured says by its status why it has no figure: it did not get there."""
+        tried = [record for record in self._candidates() if "status" in record.labels]
+        if not tried:
+            return {"ours": "–", "verdict": "not measured", "cause": ""}
+        return {"ours": self._book.marked(tried[0], tried[0].labels["status"])} | self._missed(tried[0])
+
+    def _missed(self, record: Record) -> dict[str, str]:
+        if not self._record.note:
             wanted = f"{record.key} misses the goal {self._record.key}; write the cause into the goal's note"
             self._book.complaints.append(wanted)
-        quotient = value.median / self._limit.median if self._limit.median else None
-        return row | {
-            "ours": self._book.figure(f"{record.key}:{self._metric()}", how) + self._place(record, len(found)),
-            "ratio": "–" if quotient is None else number(quotient, ".2f"),
-            "verdict": "**falls short**" if missed else "met",
-            "cause": (self._record.note or "cause not written yet") if missed else "",
-        }
+        return {"verdict": "**falls short**", "cause": self._record.note or "cause not written yet"}
 
     def _metric(self) -> str:
         return self._record.labels["of"].rpartition(":")[2]
@@ -226,13 +233,13 @@ class Goal:
         """Which of several records it is."""
         return f" ({record.labels.get('scene', record.key)})" if candidates > 1 else ""
 
+    def _candidates(self) -> list[Record]:
+        pattern = self._record.labels["of"].rpartition(":")[0]
+        return [record for key, record in self._book.records.items() if fnmatch.fnmatchcase(key, pattern)]
+
     def _matching(self) -> list[tuple[Record, Value]]:
-        """What the goal speaks of, the worst first."""
-        pattern, metric = self._record.labels["of"].rpartition(":")[0], self._metric()
-        found = [
-            (record, record.values[metric])
-            for key, record in self._book.records.items()
-            if fnmatch.fnmatchcase(key, pattern) and metric in record.values
-        ]
+        """What the goal speaks of; the one that it is judged by first."""
+        metric = self._metric()
+        found = [(record, record.values[metric]) for record in self._candidates() if metric in record.values]
         best = self._record.labels.get("judge") == "best"
         return sorted(found, key=lambda pair: pair[1].median, reverse=(self._side == "most") != best)

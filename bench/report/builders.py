@@ -45,8 +45,8 @@ def _stem(*words: str) -> str:
 
 
 def _cost(record: Record) -> tuple[float, tuple[float, float] | None] | None:
-    """What was spent: a frame's budget (ms) or samples as granted, seconds or a frame's time (ms) as measured, seconds as
-    granted; None if nothing says."""
+    """What was spent: a frame's budget (ms) or samples as granted, seconds or a frame's time (ms) as measured, seconds
+    as granted; None if nothing says."""
     for amount in ("budget_ms", "samples"):
         if amount in record.at:
             return record.at[amount], None

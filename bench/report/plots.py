@@ -110,19 +110,37 @@ class Plot:
     description: str
 
 
+def _family(name: str, names: list[str]) -> str:
+    """What gives a curve its colour: the curve that its name extends ("path, with this"), or else what stands before
+    the first comma, unless too many curves share that."""
+    words = name.split(", ")
+    parents = [", ".join(words[:count]) for count in range(len(words) - 1, 0, -1)]
+    for parent in parents:
+        if parent in names:
+            return parent
+    siblings = [other for other in names if other.split(", ")[0] == words[0]]
+    return words[0] if len(siblings) <= len(_DASHES) else name
+
+
+def _known(family: str) -> int | None:
+    """The place of a name that looks the same in all figures, with a version behind it or not."""
+    return next((place for name, place in _KNOWN.items() if family == name or family.startswith(f"{name} (")), None)
+
+
 def styles(names: list[str]) -> dict[str, dict[str, object]]:
-    """Colour, marker and dash of each curve. What stands before the first comma has the colour (known names their own,
-    others what is free), what follows the dash."""
-    families = list(dict.fromkeys(name.split(", ")[0] for name in names))
-    taken = {_KNOWN[family] for family in families if family in _KNOWN}
+    """Colour, marker and dash of each curve: a family has one colour, its members differ in dash and marker."""
+    families: dict[str, list[str]] = {}
+    for name in names:
+        families.setdefault(_family(name, names), []).append(name)
+    taken = {_known(family) for family in families}
     free = [place for place in range(len(_PALETTE)) if place not in taken]
-    unknown = [family for family in families if family not in _KNOWN]
     result: dict[str, dict[str, object]] = {}
-    for family in families:
-        turn = unknown.index(family) if family in unknown else 0
-        place = free[turn % len(free)] if family in unknown else _KNOWN[family]
-        members = [name for name in names if name.split(", ")[0] == family]
-        for step, name in enumerate(members, start=turn // len(free)):
+    turn = 0
+    for family, members in families.items():
+        known = _known(family)
+        place, start = (free[turn % len(free)], turn // len(free)) if known is None else (known, 0)
+        turn += known is None
+        for step, name in enumerate(members, start):
             marker = _MARKERS[(place + step) % len(_MARKERS)]
             result[name] = {"color": _PALETTE[place], "marker": marker, "linestyle": _DASHES[step % len(_DASHES)]}
     return result

@@ -142,6 +142,26 @@ def moving() -> list[dict[str, Any]]:
     return found
 
 
+def peers() -> list[dict[str, Any]]:
+    found = []
+    renderers = [("Cycles (Blender 3.4.1)", 40.0), ("path", 20.0)]
+    for quality, factor in (("preview", 1.0), ("medium", 1.5), ("high", 2.0)):
+        renderers += [
+            (f"corrective, {quality} maps", factor),
+            (f"corrective, {quality} maps, bake included", 5 * factor),
+        ]
+    for renderer, factor in renderers:
+        labels = {"scene": "cornell_glossy", "renderer": renderer}
+        for step in range(4):
+            values = {"seconds": value(factor * 0.1 * 4**step, "time", "s"), "relmse": value(0.5 / 3.5**step)}
+            found.append(record(f"peers/cornell_glossy/{renderer}@{4**step}spp", labels, {"spp": 4**step}, values))
+        values = {"seconds_to": value(factor, "time", "s"), "sooner_than_cycles": value(40 / factor, "ratio")}
+        found.append(record(f"peers/cornell_glossy/{renderer}/to-0.05", labels, {"relmse": 0.05}, values))
+    labels = {"scene": "cornell_glossy", "renderer": "our reference against Cycles' picture"}
+    found.append(record("peers/cornell_glossy/model", labels, {}, {"own_relmse": value(0.0008)}))
+    return found
+
+
 def others() -> list[dict[str, Any]]:
     found = []
     for exponent in range(4, 8):
@@ -161,17 +181,7 @@ def others() -> list[dict[str, Any]]:
                 {"frame_ms": value(40 - 9 * threads, "time", "ms")},
             )
         )
-    for method, factor in (("Cycles", 40.0), ("corrective, maps ready", 1.0), ("corrective, bake included", 3.0)):
-        for step in range(4):
-            seconds = factor * 0.1 * 4**step
-            found.append(
-                record(
-                    f"peers/{method}@{step}",
-                    {"scene": "cornell_glossy", "method": method},
-                    {"seconds": seconds},
-                    _errors(0.5 / 3.5**step),
-                )
-            )
+    found += peers()
     found.append(record("peers/cycles", {"renderer": "Cycles", "status": "not installed: no curve of its"}, {}, {}))
     for what, ours, theirs in (
         ("aging of fifty thousand samples", 0.9, 7.5),

@@ -157,6 +157,11 @@ class Results(unittest.TestCase):
         self.make()
         self.refused("rays/gallery misses the goal goal/rays; write the cause")
 
+    def test_what_was_tried_and_not_reached_falls_short(self) -> None:
+        tried = synthetic.record("rays/gallery", {"scene": "gallery", "status": "not reached"}, {}, {})
+        self.write("{% for goal in goals() %}\n{{ goal.ours }}, {{ goal.verdict }}\n{% endfor %}\n", [tried, goal(0.5)])
+        self.assertTrue(self.text().startswith("not reached, **falls short**\n"), self.text())
+
     def test_a_goal_without_measurement_says_so(self) -> None:
         self.write(TEMPLATE.replace("{{rays/gallery:loop|.2f M}}", "some"), [goal(0.5)])
         self.assertIn("| ratio | – | ≥ 0.50 | not measured  |", self.text())
