@@ -81,6 +81,7 @@ def write_page(folder: Path) -> Path:
         loaded=sum(record.loaded for record in records),
         total=len(records),
         mark=LOADED_MARK,
+        downloads=[name for name in ("records.json", "records.csv") if (folder / name).is_file()],
     )
     page = folder / "index.html"
     page.write_text(html, encoding="utf-8")

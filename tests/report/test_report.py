@@ -60,6 +60,7 @@ class WholePage(unittest.TestCase):
 
     def test_every_named_file_exists_inside_the_folder(self) -> None:
         self.assertGreater(len(self.page.files), 30)
+        self.assertIn("records.json", self.page.files)
         for name in self.page.files:
             self.assertFalse(name.startswith(("/", "http", "file", "..")), name)
             self.assertTrue((self.folder / name).is_file(), name)
