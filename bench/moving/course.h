@@ -18,7 +18,7 @@ struct CourseOptions {
   app::ImageSize size;
   double segment = 0.5;  ///< seconds between key views
   int segments = 3;
-  double referenceRelmse = 1e-3, referenceSeconds = 60;  ///< each key view's reference, as Confidence
+  double referenceRelmse = 1e-3, referenceSeconds = 40;  ///< each key view's reference, as Confidence
 };
 
 /// Main thread only.

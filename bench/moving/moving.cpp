@@ -105,13 +105,20 @@ Value motion(const std::vector<double>& repeats) {
   return value;
 }
 
+/// As a part of a metric's name, which is a word.
+std::string wordOf(std::string key) {
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
 /// kMainMethod's errors over another's, walk by walk.
 void addRatios(Record& record, const Trials& ours, const Trials& other) {
   const auto add = [&](const char* name, auto figure) {
     std::vector<double> values;
     for (std::size_t i = 0; i < ours.grades.size(); ++i)
       values.push_back(figure(ours.grades[i]) / figure(other.grades[i]));
-    record.values[std::string(name) + "_over_" + other.method.key()] = Value::ratio(values, Better::lower);
+    record.values[std::string(name) + "_over_" + wordOf(other.method.key())] =
+        Value::ratio(values, Better::lower);
   };
   add("flip", [](const Grade& g) { return g.errors.flip; });
   add("flip_salient", [](const Grade& g) { return g.flipSalient; });

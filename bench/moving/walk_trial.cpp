@@ -88,10 +88,15 @@ Metrics speedOf(const WalkResult& walk) {
 
 Value speedValue(const std::string& name, const std::vector<double>& repeats) {
   if (name.starts_with("frame_p")) return Value::milliseconds(repeats);
-  if (name.ends_with("_per_second")) return Value::rate(repeats);
-  if (name.starts_with("missed_share")) return Value::ratio(repeats, Better::lower);
-  assert(name.ends_with("_per_frame"));
   Value value = Value::rate(repeats);
+  if (name.ends_with("_per_second")) return value;
+  if (name.starts_with(
+          "missed_share")) {  // no ratio of two figures: it depends on machine and load as times do
+    value.unit = "";
+    value.better = Better::lower;
+    return value;
+  }
+  assert(name.ends_with("_per_frame"));
   value.unit = "1/frame";
   return value;
 }
