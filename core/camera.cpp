@@ -92,4 +92,22 @@ std::optional<View::Projected> View::project(const Vec3& world) const {
   return Projected{pixel, depth};
 }
 
+void View::project(const float* x, const float* y, const float* z, std::size_t count, float* pixelX,
+                   float* pixelY, float* viewDepth) const {
+  // Copies, so that the compiler need not fear that the results overwrite them.
+  const Vec3 eye = camera_.eye, right = right_, up = up_, forward = forward_;
+  const float tanX = tanHalfX_, tanY = tanHalfY_;
+  const auto width = static_cast<float>(width_), height = static_cast<float>(height_);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = x[i] - eye.x, dy = y[i] - eye.y, dz = z[i] - eye.z;
+    const float depth = forward.x * dx + forward.y * dy + forward.z * dz;
+    const float across = (right.x * dx + right.y * dy + right.z * dz) / (depth * tanX);
+    const float upwards = (up.x * dx + up.y * dy + up.z * dz) / (depth * tanY);
+    pixelX[i] = 0.5f * (1 + across) * width;
+    pixelY[i] = 0.5f * (1 - upwards) * height;
+    viewDepth[i] = depth;
+  }
+}
+
 }  // namespace saccade::core

@@ -55,6 +55,12 @@ class View {
   /// Nothing for a point behind the near plane (w <= 0 included) or non-finite.
   std::optional<Projected> project(const Vec3& world) const;
 
+  /// The same bits for `count` points at once, coordinate by coordinate, in as many vector lanes as there
+  /// are. What project() gives nothing for has a view depth that is not in [zNear(), FLT_MAX] or a pixel that
+  /// is not finite.
+  void project(const float* x, const float* y, const float* z, std::size_t count, float* pixelX,
+               float* pixelY, float* viewDepth) const;
+
  private:
   Camera camera_;
   int width_ = 0, height_ = 0;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -45,6 +47,19 @@ Program makeProgram(const Gl& gl, Features features) {
   }
   return p;
 }
+
+class Stopwatch {
+ public:
+  /// Seconds since the last lap.
+  double lap() {
+    const Clock::time_point from = std::exchange(last_, Clock::now());
+    return std::chrono::duration<double>(last_ - from).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
 
 struct Visible {
   float distanceSquared;  ///< eye to the object's bounds; infinite for bounds around the eye
@@ -268,12 +283,17 @@ std::shared_ptr<core::FrameSnapshot> BaseRenderer::render(const core::View& view
                                                           int nMin) {
   state_->context.makeCurrent();
   std::shared_ptr<core::FrameSnapshot> frame = state_->pool.take();
+  Stopwatch watch;
   state_->draw(view);
+  state_->gl.Finish();  // reading back would wait for it anyway
+  state_->stats.drawSeconds = watch.lap();
   state_->target.read(*frame);
   checkGl(state_->gl, "drawing the base layer");
+  state_->stats.readSeconds = watch.lap();
   frame->epoch = epoch;
   frame->view = view;
   core::measureExtents(*frame, state_->idCount, nMin);
+  state_->stats.measureSeconds = watch.lap();
   return frame;
 }
 

@@ -29,6 +29,9 @@ struct DrawStats {
   std::size_t objectsDrawn = 0;
   std::size_t objectsCulled = 0;  ///< outside the frustum
   std::size_t triangles = 0;
+  double drawSeconds = 0;     ///< submitting and rasterising, until GL has finished
+  double readSeconds = 0;     ///< colour, ID and depth into main memory
+  double measureSeconds = 0;  ///< core::measureExtents
 };
 
 /// GL thread only, the destructor included. Every function makes the context current.

@@ -40,6 +40,7 @@ namespace saccade::render {
   X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex)   \
   X(ENABLE, Enable)                                   \
   X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) \
+  X(FINISH, Finish)                                   \
   X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D)       \
   X(FRONTFACE, FrontFace)                             \
   X(GENBUFFERS, GenBuffers)                           \

@@ -31,6 +31,9 @@ constexpr int kVisitsPerFloor = 4;
 constexpr int kMargin = 8;
 constexpr int kPitch = CorrectionLayer::kMaxFootprint + 2 * kMargin;
 
+/// Closeness of a splat's own centre: the first of all offsets.
+constexpr std::int32_t kClosest = CorrectionLayer::kMaxFootprint * CorrectionLayer::kMaxFootprint;
+
 /// Closeness of a pixel to a splat centre by its offset (dx, dy) from it: a total order on the offsets, so
 /// that no two centres tie at a pixel. 1 = farthest corner.
 class ClosenessTable {
@@ -146,7 +149,24 @@ void CorrectionLayer::splatWarped(const Splat& warped, std::uint32_t id, core::V
   const std::int32_t youth = kMaxYouth - 1 - std::min<std::int32_t>(warped.ageFrames, kMaxYouth - 1);
   const std::int32_t base = (warped.level << kLevelShift) | youth;
   const int cx = static_cast<int>(std::floor(pixel.x)), cy = static_cast<int>(std::floor(pixel.y));
-  if (stamp(warped, id, cx, cy, base)) splats_.push_back(warped);
+  const bool reached =
+      warped.footprint == 1 ? stampPixel(warped, id, cx, cy, base) : stamp(warped, id, cx, cy, base);
+  if (reached) splats_.push_back(warped);
+}
+
+/// stamp() for a splat of a single pixel: most of what a camera at rest leaves behind.
+bool CorrectionLayer::stampPixel(const Splat& splat, std::uint32_t id, int x, int y, std::int32_t base) {
+  if (id == 0 || x < 0 || y < 0 || x >= width_ || y >= height_) return false;
+  const std::size_t index = tileIndex(x, y);
+  Tile& tile = tiles_[index];
+  const int i = inTile(x, y);
+  const std::int32_t rank = base + (kClosest << kYouthBits);
+  if (tile.id[i] != id || tile.rank[i] > rank) return false;
+  if (tile.rank[i] == rank && !preferred(splat, splats_[tile.shown[i]])) return false;
+  tile.rank[i] = rank;
+  tile.shown[i] = static_cast<std::uint32_t>(splats_.size());
+  states_[index].changed = true;
+  return true;
 }
 
 /// Stamps what will be the next of splats_ into all tiles of its footprint; whether it reached a pixel.

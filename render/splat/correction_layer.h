@@ -53,6 +53,16 @@ class CorrectionLayer {
   /// side in [1, kMaxFootprint]. The caller has tested mask and depth at the centre (fact 12).
   void splatWarped(const Splat& warped, std::uint32_t id, core::Vec2 pixel);
 
+  /// Fetches what splatWarped will look at first for a centre inside the image.
+  void prefetch(core::Vec2 pixel) const {
+    const int x = static_cast<int>(pixel.x), y = static_cast<int>(pixel.y);
+    const Tile& tile = tiles_[tileIndex(x, y)];
+    const int i = inTile(x, y);
+    __builtin_prefetch(&tile.rank[i]);
+    __builtin_prefetch(&tile.id[i]);
+    __builtin_prefetch(&tile.shown[i]);
+  }
+
   const core::FramePtr& frame() const { return frame_; }
   int width() const { return width_; }
   int height() const { return height_; }
@@ -101,6 +111,7 @@ class CorrectionLayer {
   static int inTile(int x, int y) { return (y % kTile) * kTile + x % kTile; }
 
   void loadMask(std::size_t tile, int tileX, int tileY);
+  bool stampPixel(const Splat& splat, std::uint32_t id, int x, int y, std::int32_t base);
   bool stamp(const Splat& splat, std::uint32_t id, int cx, int cy, std::int32_t base);
   struct Stamped {
     bool reached, tied;

@@ -4,12 +4,16 @@
 #include <cassert>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace saccade::render {
 namespace {
 
 constexpr int kMaxLevel = core::Lattice::kMaxLevel;
+/// Splats between the fetch of a tile and its use.
+constexpr std::size_t kAhead = 8;
+constexpr float kLargest = std::numeric_limits<float>::max();
 
 bool finite(const core::Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -242,30 +246,30 @@ std::size_t SampleCache::invalidate(Generation& g, const core::Vec3& eye, float 
   return dead;
 }
 
-/// Removes dead samples, keeping the order of the rest.
+/// Removes dead samples: the generation's last ones move into their places.
 void SampleCache::compact(Generation& g) {
-  std::size_t toPage = 0;
-  int to = 0;
-  for (std::size_t fromPage = 0; fromPage < g.pages.size(); ++fromPage) {
-    const Page& from = *g.pages[fromPage];
-    const int count = from.count;
-    for (int i = 0; i < count; ++i) {
-      if (from.level[i] == 0) continue;
-      if (to == Page::kCapacity) {
-        g.pages[toPage++]->count = Page::kCapacity;
-        to = 0;
-      }
-      if (fromPage != toPage || i != to) g.pages[toPage]->set(to, from.get(i));
-      ++to;
+  for (std::size_t p = 0; p < g.pages.size(); ++p) {
+    Page& page = *g.pages[p];
+    for (int i = 0; i < page.count; ++i) {
+      if (page.level[i] != 0) continue;
+      dropDeadEnd(g);
+      if (p >= g.pages.size() || i >= page.count) break;
+      Page& last = *g.pages.back();
+      page.set(i, last.get(--last.count));
     }
   }
-  if (!g.pages.empty()) g.pages[toPage]->count = to;
-  const std::size_t kept = to > 0 ? toPage + 1 : 0;
-  for (std::size_t p = kept; p < g.pages.size(); ++p) {
-    g.pages[p]->count = 0;  // what lived there has moved
-    releasePage(std::move(g.pages[p]));
+  dropDeadEnd(g);
+}
+
+/// Takes dead samples off a generation's end, and pages that are empty then.
+void SampleCache::dropDeadEnd(Generation& g) {
+  while (!g.pages.empty()) {
+    Page& last = *g.pages.back();
+    while (last.count > 0 && last.level[last.count - 1] == 0) --last.count;
+    if (last.count > 0) return;
+    releasePage(std::move(g.pages.back()));
+    g.pages.pop_back();
   }
-  g.pages.resize(kept);
 }
 
 SampleCache::WarpResult SampleCache::warp(const core::FrameSnapshot& frame, CorrectionLayer& layer) {
@@ -276,13 +280,16 @@ SampleCache::WarpResult SampleCache::warp(const core::FrameSnapshot& frame, Corr
   // The picture does not depend on the order. Fine before coarse and young before old lets the layer pass
   // over whole tiles of the large splats.
   for (int level = kMaxLevel; level >= 1; --level) {
-    for (const Visible& v : visible_[static_cast<std::size_t>(level)]) {
+    const std::vector<Visible>& list = visible_[static_cast<std::size_t>(level)];
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (k + kAhead < list.size()) layer.prefetch(list[k + kAhead].pixel);
+      const Visible& v = list[k];
       const Page& p = *v.page;
       const auto i = static_cast<std::size_t>(v.slot);
       layer.splatWarped({p.correction[i], p.x[i], p.y[i], v.ageFrames, p.level[i], p.thread[i], v.footprint},
                         p.id[i], v.pixel);
     }
-    result.splatted += visible_[static_cast<std::size_t>(level)].size();
+    result.splatted += list.size();
   }
   if (result.dropped > 0) {
     for (Generation& g : generations_) compact(g);
@@ -340,19 +347,21 @@ void SampleCache::findVisible(Generation& g, const core::FrameSnapshot& frame, W
 /// tested against are fetched meanwhile: neighbours of a coarse level never share a cache line.
 int SampleCache::projectPage(const Page& page, const core::FrameSnapshot& frame,
                              std::array<Landing, Page::kCapacity>& landings) {
+  alignas(32) float x[Page::kCapacity], y[Page::kCapacity], depth[Page::kCapacity];
+  frame.view.project(page.px, page.py, page.pz, static_cast<std::size_t>(page.count), x, y, depth);
   const auto width = static_cast<float>(frame.view.width()), height = static_cast<float>(frame.view.height());
+  const float zNear = frame.view.zNear();
   int inside = 0;
   for (int i = 0; i < page.count; ++i) {
-    const auto projected = frame.view.project(page.position(i));
-    if (!projected) continue;
-    const core::Vec2 pixel = projected->pixel;
-    if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < width && pixel.y < height)) continue;
-    const std::size_t index = frame.index(static_cast<int>(pixel.x), static_cast<int>(pixel.y));
+    // Written so that NaN fails.
+    if (!(depth[i] >= zNear && depth[i] <= kLargest)) continue;
+    if (!(x[i] >= 0 && y[i] >= 0 && x[i] < width && y[i] < height)) continue;
+    const std::size_t index = frame.index(static_cast<int>(x[i]), static_cast<int>(y[i]));
     __builtin_prefetch(&frame.baseAndId[index].w);
     __builtin_prefetch(&frame.depth[index]);
     Landing& at = landings[static_cast<std::size_t>(inside++)];
-    at.pixel = pixel;
-    at.viewDepth = projected->viewDepth;
+    at.pixel = {x[i], y[i]};
+    at.viewDepth = depth[i];
     at.pixelIndex = static_cast<std::int32_t>(index);
     at.slot = static_cast<std::uint8_t>(i);
   }

@@ -140,6 +140,7 @@ class SampleCache {
   std::size_t invalidate(Generation& g, const core::Vec3& eye, float delta,
                          const std::vector<std::uint8_t>& tested);
   void compact(Generation& g);
+  void dropDeadEnd(Generation& g);
   static int projectPage(const Page& page, const core::FrameSnapshot& frame,
                          std::array<Landing, Page::kCapacity>& landings);
   void findVisible(Generation& g, const core::FrameSnapshot& frame, WarpResult& result);

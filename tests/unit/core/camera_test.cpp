@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "core/error.h"
 
@@ -120,6 +122,30 @@ TEST(View, NothingBehindTheEyeOrAtInfinity) {
   EXPECT_FALSE(view.project({nan, 0, 0}));
   EXPECT_FALSE(view.project({kInfinity, 0, 0}));
   EXPECT_TRUE(view.project(eye + sight));
+}
+
+TEST(View, ManyPointsProjectToTheBitsOfEach) {
+  const View view(oblique(), 320, 200, box(4));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> u(-5, 5);
+  std::vector<float> x, y, z;
+  for (int i = 0; i < 1003; ++i) x.push_back(u(random)), y.push_back(u(random)), z.push_back(u(random));
+  x[5] = kInfinity, y[6] = std::numeric_limits<float>::quiet_NaN(), z[7] = 3e38f;
+  std::vector<float> px(x.size()), py(x.size()), depth(x.size());
+  view.project(x.data(), y.data(), z.data(), x.size(), px.data(), py.data(), depth.data());
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto one = view.project({x[i], y[i], z[i]});
+    const bool inside = depth[i] >= view.zNear() && depth[i] <= std::numeric_limits<float>::max() &&
+                        std::isfinite(px[i]) && std::isfinite(py[i]);
+    ASSERT_EQ(one.has_value(), inside) << i;
+    if (!one) continue;
+    ++seen;
+    ASSERT_EQ(one->pixel, Vec2(px[i], py[i]));
+    ASSERT_EQ(one->viewDepth, depth[i]);
+  }
+  EXPECT_GT(seen, 300u);
+  EXPECT_LT(seen, x.size());
 }
 
 TEST(View, DegenerateCamerasAreRefused) {
