@@ -4,6 +4,11 @@
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
 #include "bench/moving/moving.h"
+#include "bench/paper/figure5.h"
+#include "bench/paper/figure6.h"
+#include "bench/paper/gallery_walk.h"
+#include "bench/paper/section5.h"
+#include "bench/paper/untraced.h"
 #include "bench/peers/peers.h"
 #include "bench/quality/quality.h"
 #include "bench/rays/rays.h"
@@ -50,6 +55,25 @@ const std::vector<Experiment>& allExperiments() {
        "How do frame time and memory grow with the scene, the cache, the picture and the tracers?",
        {},
        &measureGrowth},
+      {"paper",
+       "Haber 2001, section 5, row by row: ours beside the paper's",
+       {Suite::paper},
+       &measureSection5},
+      {"figures",
+       "Haber 2001, Figures 5 and 6: splats of the first levels, samples warped for reuse",
+       {Suite::paper},
+       [](Session& session) {
+         drawFigure5(session);
+         drawFigure6(session);
+       }},
+      {"gallery-walk",
+       "Does the frame rate hold in the museum hall at 8 and 25 frames a second?",
+       {Suite::paper},
+       &measureGalleryWalk},
+      {"untraced",
+       "Is the frame without tracing at most half as long again as its bare draw?",
+       {Suite::paper},
+       &measureUntraced},
   };
   return experiments;
 }
