@@ -1,11 +1,13 @@
 #include "bench/bench_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <memory>
 
 #include "app/cli/console.h"
+#include "bench/harness/method.h"
 #include "bench/harness/runner.h"
 
 namespace saccade::bench {
@@ -19,6 +21,14 @@ std::string experimentList() {
     text += name + e.question + "\n";
   }
   return text;
+}
+
+std::vector<std::string> methodNames() {
+  std::vector<std::string> names;
+  for (const Method& method : allMethods()) {
+    if (std::find(names.begin(), names.end(), method.name) == names.end()) names.push_back(method.name);
+  }
+  return names;
 }
 
 /// As the user would type it again.
@@ -58,9 +68,8 @@ void addBenchCommand(CLI::App& program, app::Run& run) {
   command->add_option("--experiment", o->only, "Only this experiment (repeatable; see below)");
   command->add_option("--scene", o->scenes, "Scene file instead of the bundled ones (repeatable)")
       ->check(CLI::ExistingFile);
-  command
-      ->add_option("--method", o->methods, "Only this method (repeatable): base, corrective, raytrace, path")
-      ->check(CLI::IsMember({"base", "corrective", "raytrace", "path"}));
+  const std::vector<std::string> methods = methodNames();
+  command->add_option("--method", o->methods, "Only this method (repeatable)")->check(CLI::IsMember(methods));
   command
       ->add_option("--path", o->path,
                    "Camera path for --scene (JSON, as for walk); without it a scene's moving camera orbits")

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
-#include <set>
 
 #include "bench/harness/baseline.h"
 #include "core/atomic_file.h"

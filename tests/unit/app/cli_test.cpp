@@ -1,9 +1,7 @@
 // The command line as a stranger and a script meet it: exit statuses, one error line, names that others rely
 // on.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -12,51 +10,22 @@
 
 #include "app/viewer/panel.h"
 #include "core/image_io.h"
+#include "tests/command_line.h"
 #include "tests/unit/app/fixtures.h"
 
 namespace saccade {
 namespace {
 
-struct Ran {
-  int status = -1;
-  std::string out, err;
-};
-
-std::string slurp(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// Runs `saccade ARGUMENTS` through the shell, with its own cache folder.
-Ran saccade(const std::string& arguments, const std::string& environment = "") {
-  const std::filesystem::path errors = tests::temporaryFolder() / "stderr.txt";
-  const std::string command = environment + "XDG_CACHE_HOME='" +
-                              (tests::temporaryFolder() / "cache").string() + "' '" SACCADE_BINARY "' " +
-                              arguments + " 2>'" + errors.string() + "'";
-  Ran ran;
-  FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 4096> buffer{};
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    ran.out.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  ran.err = slurp(errors);
-  return ran;
-}
+using tests::errorLines;
+using tests::Ran;
+using tests::saccade;
+using tests::slurp;
 
 std::string quoted(const std::filesystem::path& file) { return "'" + file.string() + "'"; }
 std::filesystem::path output(const std::string& name) { return tests::temporaryFolder() / name; }
 
 const std::string kCornell = quoted(tests::bundled("cornell.glb"));
 const std::string kQuick = " --quality preview --size 96x64 ";
-
-int errorLines(const std::string& err) {
-  int n = 0;
-  for (std::size_t at = err.find("saccade: error: "); at != std::string::npos;
-       at = err.find("saccade: error: ", at + 1))
-    ++n;
-  return n;
-}
 
 TEST(Cli, WrongUsageIsStatusTwoWithAHint) {
   for (const char* arguments :

@@ -16,23 +16,9 @@
 #include "core/composite.h"
 #include "raytrace/reference.h"
 #include "tests/shared_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace saccade::tests {
-
-/// A folder of this process that is removed at its end.
-inline const std::filesystem::path& temporaryFolder() {
-  struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("saccade-test-" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
-}
 
 inline std::filesystem::path bundled(const std::string& name) {
   return std::filesystem::path(SACCADE_SOURCE_DIR) / "data" / "scenes" / name;
