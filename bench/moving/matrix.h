@@ -16,7 +16,7 @@ inline constexpr const char* kMainMethod = "corrective-attention";
 std::vector<double> movingBudgets(Suite suite);
 
 /// The methods that have frames in a budget, among those that --method leaves: main variants at every budget
-/// of the suite, the others (orders, weights) at 16 and 66 ms; full: all at all. raytrace and path do not
+/// of the suite, the others (orders, weights) at 16 and 33 ms; full: all at all. raytrace and path do not
 /// follow budgets and are not among them.
 std::vector<Method> movingMethods(const BenchOptions& options, double budgetMs);
 

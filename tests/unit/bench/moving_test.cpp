@@ -153,7 +153,7 @@ TEST(MovingMatrix, QuickHasTheMainVariantsThePaperTheOrdersAtTwoBudgetsAndFullEv
 
   options.suite = Suite::paper;
   EXPECT_EQ(movingBudgets(Suite::paper), (std::vector<double>{8, 16, 33, 66, 125}));
-  EXPECT_EQ(keysOf(movingMethods(options, 33)), main);
+  EXPECT_EQ(keysOf(movingMethods(options, 66)), main);
   std::set<std::string> orders = main;
   orders.insert({"corrective-random", "corrective-scanline", "corrective-largest", "corrective-task",
                  "corrective-attention0", "corrective-attention1"});
