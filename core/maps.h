@@ -33,6 +33,9 @@ struct IlluminationMaps {
   std::string quality;  ///< preview, medium, high
   std::uint64_t photons = 0;
   std::uint64_t key = 0;  ///< sceneKey of the scene they were made for
+  /// What halves could not hold when the maps were baked (known to the baker alone: not in the file).
+  std::uint64_t clampedTexels = 0;
+  double clampedWatts = 0;  ///< mean of R, G and B
 
   /// Decoded texel; x, y clamped to the atlas.
   Vec3 texel(int x, int y, int layer) const;

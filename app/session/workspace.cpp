@@ -84,6 +84,9 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
   core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bakeOptions,
                                                    {[&](double fraction) { bar.show(fraction); }, stop});
   maps.key = key;
+  if (maps.clampedTexels > 0)
+    spdlog::warn("illumination maps hold at most 65504 W/m^2: {} texels are brighter, {:.3g} W are left out",
+                 maps.clampedTexels, maps.clampedWatts);
   return maps;
 }
 

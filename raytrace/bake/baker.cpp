@@ -41,6 +41,18 @@ std::uint16_t toHalf(float value) {
   return glm::packHalf1x16(std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargestHalf));
 }
 
+/// Appends one layer's texels, and counts what halves cannot hold.
+void storeHalves(const TexelMap& texels, const std::vector<Vec3>& irradiance, core::IlluminationMaps& maps) {
+  for (std::size_t i = 0; i < irradiance.size(); ++i) {
+    const Vec3 e = irradiance[i];
+    for (int c = 0; c < 3; ++c) maps.texels.push_back(toHalf(e[c]));
+    const Vec3 over = glm::max(e - kLargestHalf, Vec3(0));
+    if (texels.area(i) == 0 || over == Vec3(0)) continue;  // gutters repeat others
+    ++maps.clampedTexels;
+    maps.clampedWatts += (double{over.x} + over.y + over.z) / 3 * texels.area(i);
+  }
+}
+
 /// Smoothed direct light of one layer.
 std::vector<DensityEstimate> bakeDirect(const World& world, const TexelMap& texels, int layer,
                                         const Preset& preset, const BakeOptions& options,
@@ -97,7 +109,7 @@ core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, in
   maps.charts = std::move(charts);
   maps.quality = options.quality;
   maps.photons = options.photons ? options.photons : preset.photons;
-  maps.texels.resize(texels.texelCount() * 3 * static_cast<std::size_t>(maps.layers));
+  maps.texels.reserve(texels.texelCount() * 3 * static_cast<std::size_t>(maps.layers));
 
   constexpr double kParticleShare = 0.6;  // of the time
   ParticleState particles(texels.texelCount(), maps.layers);
@@ -110,10 +122,7 @@ core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, in
     if (options.imported)
       importIrradiance(texels, world.scene(), *options.imported, options.threads, irradiance);
     fillGutters(texels, irradiance);
-    std::uint16_t* out = maps.texels.data() + static_cast<std::size_t>(layer) * texels.texelCount() * 3;
-    for (const Vec3& e : irradiance) {
-      for (int c = 0; c < 3; ++c) *out++ = toHalf(e[c]);
-    }
+    storeHalves(texels, irradiance, maps);
   }
   return maps;
 }

@@ -204,14 +204,5 @@ TEST_F(LoopTest, AStopRequestEndsAConvergingFrame) {
   EXPECT_FALSE(loop.converged());
 }
 
-TEST_F(LoopTest, SizesFromOnePixelUp) {
-  for (const ImageSize size : {ImageSize{1, 1}, ImageSize{3, 5}, ImageSize{513, 2}}) {
-    FrameLoop loop(workspace_, *gl_.renderer, {.threads = 2});
-    loop.step(camera_, size, FrameBudget::untilConverged());
-    EXPECT_TRUE(loop.converged());
-    EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
-  }
-}
-
 }  // namespace
 }  // namespace saccade

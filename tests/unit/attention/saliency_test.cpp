@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
+#include "core/image_io.h"
+#include "tests/hard_case.h"
 #include "tests/unit/attention/pictures.h"
 
 namespace saccade::attention {
@@ -18,6 +21,7 @@ using core::ImageRgba8;
 using core::Rgba8;
 using tests::brightestPlace;
 using tests::Disc;
+using tests::HardCase;
 using tests::paint;
 using tests::rgb;
 
@@ -28,11 +32,16 @@ std::string sizeName(const ImageRgba8& image) {
   return std::to_string(image.width()) + " x " + std::to_string(image.height());
 }
 
-bool allZero(const ImageGray& map) {
-  return std::all_of(map.pixels().begin(), map.pixels().end(), [](float v) { return v == 0; });
+double largestValue(const ImageGray& map) {
+  double largest = 0;
+  for (const float v : map.pixels()) {
+    if (!(v <= largest)) largest = v;  // keeps a NaN
+  }
+  return largest;
 }
 
-TEST(Saliency, ConstantImagesOfAnyColourGiveExactlyZero) {
+TEST(Saliency, Hard26ConstantImagesOfAnyColourGiveExactlyZero) {
+  HardCase salient("saliency of constant images");
   const std::vector<Rgba8> colours{rgb(0, 0, 0),     rgb(255, 255, 255), rgb(255, 0, 0),  rgb(0, 255, 0),
                                    rgb(0, 0, 255),   rgb(255, 255, 0),   rgb(1, 0, 0),    rgb(128, 127, 126),
                                    rgb(37, 211, 89), rgb(251, 3, 177),   rgb(13, 17, 254)};
@@ -41,9 +50,37 @@ TEST(Saliency, ConstantImagesOfAnyColourGiveExactlyZero) {
     for (const auto& [width, height] : kSizes) {
       for (const Rgba8& colour : colours) {
         const ImageRgba8 image(width, height, colour);
-        ASSERT_TRUE(allZero(model.compute(image)))
+        ASSERT_TRUE(salient.within(largestValue(model.compute(image)), 0))
             << sizeName(image) << " of " << int(colour.r) << ", " << int(colour.g) << ", " << int(colour.b);
       }
+    }
+  }
+}
+
+// The model looks at what is displayed: whatever radiance holds is a colour by then.
+TEST(Saliency, Hard26RadianceOfNanAndAMillionGivesASoundMap) {
+  constexpr int kSide = 128;
+  core::ImageRgb radiance(kSide, kSide, core::Vec3(0.2f));
+  const auto block = [&](int x0, int y0, float value) {
+    for (int y = y0; y < y0 + 12; ++y) {
+      for (int x = x0; x < x0 + 12; ++x) radiance.at(x, y) = core::Vec3(value);
+    }
+  };
+  block(20, 90, std::nanf(""));
+  block(90, 30, 1e6f);
+  block(60, 60, -1e6f);
+  block(100, 100, core::kInfinity);
+  HardCase unsound =
+      HardCase::counting("saliency outside [0, 1] for radiance of NaN, 1e6, -1e6 and infinity", "pixels");
+  HardCase constant("saliency of pictures all NaN or all 1e6");
+  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
+    const ImageGray map = saliencyOf(core::toDisplay(radiance, 0), {kind});
+    int wrong = 0;
+    for (const float v : map.pixels()) wrong += !(v >= 0 && v <= 1);
+    EXPECT_TRUE(unsound.within(wrong, 0));
+    for (const float value : {std::nanf(""), 1e6f}) {
+      const ImageRgba8 all = core::toDisplay(core::ImageRgb(kSide, kSide, core::Vec3(value)), 0);
+      EXPECT_TRUE(constant.within(largestValue(saliencyOf(all, {kind})), 0)) << value;
     }
   }
 }
@@ -70,7 +107,8 @@ double mapPixel(const ImageRgba8& image) {
   return levels >= 5 ? 1 << (levels - 5) : 1;
 }
 
-TEST(Saliency, OneDiscIsTheMostSalientPlace) {
+TEST(Saliency, Hard26OneDiscIsTheMostSalientPlace) {
+  HardCase off("most salient place from the middle of the only disc", "pixels");
   SaliencyModel max, dog({Normalisation::dog});
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{
            {64, 64}, {100, 75}, {256, 256}, {333, 257}, {640, 480}, {512, 512}, {1000, 300}}) {
@@ -82,7 +120,8 @@ TEST(Saliency, OneDiscIsTheMostSalientPlace) {
           paint(image, disc, contrast.figure);
           for (SaliencyModel* model : {&max, &dog}) {
             const tests::Place at = brightestPlace(model->compute(image));
-            EXPECT_LE(std::hypot(at.x + 0.5 - disc.x, at.y + 0.5 - disc.y), disc.radius + mapPixel(image))
+            EXPECT_TRUE(off.within(std::hypot(at.x + 0.5 - disc.x, at.y + 0.5 - disc.y),
+                                   disc.radius + mapPixel(image)))
                 << contrast.name << ", " << sizeName(image) << ", disc at " << disc.x << ", " << disc.y
                 << " of radius " << disc.radius << ", most salient " << at.x << ", " << at.y
                 << (model == &dog ? " (dog)" : " (max)");
@@ -94,7 +133,8 @@ TEST(Saliency, OneDiscIsTheMostSalientPlace) {
 }
 
 // As bright as the others: only the one map in which it is alone tells it apart.
-TEST(Saliency, TheOddOneAmongManyStandsOut) {
+TEST(Saliency, Hard26TheOddOneAmongManyStandsOut) {
+  HardCase off("most salient place from the middle of the odd one of 25", "pixels");
   constexpr int kGrid = 5, kCell = 100;
   for (int odd = 0; odd < kGrid * kGrid; ++odd) {
     ImageRgba8 image(kGrid * kCell, kGrid * kCell, rgb(90, 90, 90));
@@ -102,7 +142,8 @@ TEST(Saliency, TheOddOneAmongManyStandsOut) {
     for (int i = 0; i < kGrid * kGrid; ++i)
       paint(image, disc(i), i == odd ? rgb(230, 80, 80) : rgb(130, 130, 130));
     const tests::Place at = brightestPlace(saliencyOf(image, {}));
-    EXPECT_LE(std::hypot(at.x + 0.5 - disc(odd).x, at.y + 0.5 - disc(odd).y), 18 + 16) << "odd one " << odd;
+    EXPECT_TRUE(off.within(std::hypot(at.x + 0.5 - disc(odd).x, at.y + 0.5 - disc(odd).y), 18 + 16))
+        << "odd one " << odd;
   }
 }
 

@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "core/error.h"
+#include "tests/hard_case.h"
 
 namespace saccade::core {
 namespace {
+
+using tests::HardCase;
 
 Bounds box(float half) {
   Bounds b;
@@ -54,19 +57,42 @@ TEST(View, RowZeroIsTheTopAndColumnsGoRight) {
   EXPECT_NEAR(centreOfFirstPixel.x, -1.99, 1e-6);
 }
 
-TEST(View, ProjectUndoesUnproject) {
-  const View view(oblique(), 333, 217, box(6));
+/// Pixels from a random position of the image and around it, through the world and back.
+void expectRoundTrip(const View& view, HardCase& lost) {
   std::mt19937 random(1);
-  std::uniform_real_distribution<float> unit(0, 1);
+  std::uniform_real_distribution<float> place(-0.5f, 1.5f), unit(0, 1);
+  const auto w = static_cast<float>(view.width()), h = static_cast<float>(view.height());
   for (int i = 0; i < 1000; ++i) {
-    const Vec2 pixel(unit(random) * 333, unit(random) * 217);
+    const Vec2 pixel(place(random) * w, place(random) * h);
     const float t = view.zNear() * 2 + unit(random) * 8;
     const auto back = view.project(view.camera().eye + t * view.direction(pixel));
     ASSERT_TRUE(back);
-    EXPECT_NEAR(back->pixel.x, pixel.x, 2e-3f);
-    EXPECT_NEAR(back->pixel.y, pixel.y, 2e-3f);
-    EXPECT_NEAR(back->viewDepth, t, 1e-5f * t + 1e-6f);
+    // A point in floats is off by its own rounding and that of its offset, across and along the line of
+    // sight.
+    const double far = glm::length(view.direction(pixel));
+    const double step = 4 * 0x1p-24 * (glm::length(view.camera().eye) + t * far);
+    const double perSlope = 0.5 * h / std::tan(glm::radians(view.camera().fovYDegrees) / 2.0);
+    const double allowed = perSlope * step / t * (1 + far) + 4 * 0x1p-24 * std::max(w, h);
+    const Vec2 off = glm::abs(back->pixel - pixel);
+    EXPECT_TRUE(lost.within(std::max(off.x, off.y), allowed)) << pixel.x << ", " << pixel.y << " at " << t;
+    EXPECT_NEAR(back->viewDepth, t, step);
   }
+}
+
+TEST(View, Hard21ProjectUndoesUnprojectOfNegativeAndHalfPixels) {
+  HardCase lost("pixel to the world and back, in and around images of 1 x 1 to 16384^2", "pixels");
+  for (const auto& [w, h] : {std::pair{1, 1}, {3, 5}, {333, 217}, {8192, 8192}, {16384, 16384}})
+    expectRoundTrip(View(oblique(), w, h, box(6)), lost);
+}
+
+TEST(View, Hard27ProjectUndoesUnprojectAtOneAnd179Degrees) {
+  HardCase narrow("pixel to the world and back at 1 degree", "pixels"),
+      wide("pixel to the world and back at 179 degrees", "pixels");
+  Camera c = oblique();
+  c.fovYDegrees = 1;
+  expectRoundTrip(View(c, 640, 480, box(6)), narrow);
+  c.fovYDegrees = 179;
+  expectRoundTrip(View(c, 640, 480, box(6)), wide);
 }
 
 TEST(View, ClipMatrixAgreesWithProjectAndDepth) {
@@ -148,25 +174,32 @@ TEST(View, ManyPointsProjectToTheBitsOfEach) {
   EXPECT_LT(seen, x.size());
 }
 
-TEST(View, DegenerateCamerasAreRefused) {
-  const auto refused = [](auto&& change) {
+TEST(View, Hard27DegenerateCamerasAreRefused) {
+  HardCase accepted =
+      HardCase::counting("degenerate cameras (singular matrices) that are accepted", "cameras");
+  const auto refused = [&](auto&& change) {
     Camera c = oblique();
     change(c);
-    EXPECT_THROW(View(c, 64, 64, box(1)), Error);
+    bool threw = false;
+    try {
+      const View view(c, 64, 64, box(1));
+    } catch (const Error&) {
+      threw = true;
+    }
+    EXPECT_TRUE(accepted.within(!threw, 0));
   };
   refused([](Camera& c) { c.at = c.eye; });
   refused([](Camera& c) { c.up = c.at - c.eye; });
+  refused([](Camera& c) { c.up = -1e-3f * (c.at - c.eye); });
   refused([](Camera& c) { c.up = Vec3(0); });
   refused([](Camera& c) { c.eye.x = std::numeric_limits<float>::quiet_NaN(); });
+  refused([](Camera& c) { c.at.y = kInfinity; });
+  refused([](Camera& c) { c.eye = Vec3(3e38f), c.at = Vec3(-3e38f); });
   refused([](Camera& c) { c.fovYDegrees = 0; });
   refused([](Camera& c) { c.fovYDegrees = 180; });
+  refused([](Camera& c) { c.fovYDegrees = -60; });
   refused([](Camera& c) { c.fovYDegrees = kInfinity; });
   EXPECT_THROW(View(oblique(), 0, 64, box(1)), Error);
-  Camera wide = oblique();
-  wide.fovYDegrees = 179;
-  EXPECT_NO_THROW(View(wide, 64, 64, box(1)));
-  wide.fovYDegrees = 1;
-  EXPECT_NO_THROW(View(wide, 64, 64, Bounds{}));
 }
 
 }  // namespace

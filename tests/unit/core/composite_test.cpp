@@ -10,6 +10,7 @@
 
 #include "core/image_io.h"
 #include "core/srgb8.h"
+#include "tests/hard_case.h"
 
 namespace saccade::core {
 namespace {
@@ -55,6 +56,27 @@ TEST(Srgb8, EqualsRoundingTheEncodedValue) {
   }
   for (float x : {kNan, -kNan, -1.0f, -0.0f, kInfinity, -kInfinity, 1e30f, 1.0f}) {
     EXPECT_EQ(table(x), byDefinition(x)) << x;
+  }
+}
+
+TEST(Srgb8, Hard22ToneMappingOfWhatIsNoColour) {
+  // NaN, what is negative and black give 0; infinity and what is beyond 1 give 255; at any exposure.
+  tests::HardCase off("display code of NaN, -1, infinity and black", "codes");
+  const std::pair<float, int> truths[] = {
+      {kNan, 0},       {-kNan, 0},  {-1, 0},          {-0.0f, 0},   {0, 0},
+      {-kInfinity, 0}, {-1e30f, 0}, {kInfinity, 255}, {1e30f, 255}, {std::numeric_limits<float>::max(), 255}};
+  for (const float ev : {-20.0f, 0.0f, 20.0f}) {
+    for (const auto& [value, code] : truths) {
+      // A picture wide enough for the path that encodes eight at once, and its rest.
+      for (const int width : {1, 19}) {
+        const ImageRgba8 image = toDisplay(ImageRgb(width, 1, Vec3(value)), ev);
+        for (const Rgba8& p : image.pixels()) {
+          for (const int got : {p.r, p.g, p.b})
+            EXPECT_TRUE(off.near(got, code, 0)) << value << " at " << ev << " EV";
+          EXPECT_EQ(p.a, 255);
+        }
+      }
+    }
   }
 }
 

@@ -12,8 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "tests/hard_case.h"
+
 namespace saccade::core {
 namespace {
+
+using tests::HardCase;
 
 using Gauss = std::complex<std::int64_t>;
 
@@ -111,24 +115,57 @@ std::vector<std::pair<int, int>> walkWhole(const PixelBox& box, int level, bool 
   return points;
 }
 
-TEST(WalkLattice, LevelsTogetherVisitEveryPixelOnceForAnyBoxAndJobSize) {
-  const PixelBox boxes[] = {{0, 0, 1, 1},     {0, 0, 3, 5},      {-7, -9, 40, 33}, {5, 5, 205, 155},
-                            {0, 0, 200, 150}, {-3, 60, -2, 300}, {11, 0, 411, 1}};
+/// Pixels of the box that all levels together do not visit exactly once, and visits of another level's pixel.
+std::int64_t wrongVisits(const PixelBox& box, std::int64_t job) {
+  std::vector<std::uint8_t> visits(static_cast<std::size_t>(box.area()), 0);
+  const std::int64_t width = box.x1 - box.x0;
+  std::int64_t wrong = 0;
+  for (int level = 1; level <= Lattice::kMaxLevel; ++level) {
+    for (const auto& [x, y] : walkWhole(box, level, true, job)) {
+      ++visits[static_cast<std::size_t>((y - box.y0) * width + x - box.x0)];
+      wrong += Lattice::levelOf(x, y) != level;
+    }
+  }
+  for (const std::uint8_t n : visits) wrong += n != 1;
+  return wrong;
+}
+
+TEST(WalkLattice, Hard25LevelsTogetherVisitEveryPixelOnceForAnyBoxAndJobSize) {
+  HardCase wrong =
+      HardCase::counting("pixels of boxes of any size and offset not visited exactly once", "pixels");
+  std::vector<PixelBox> boxes = {{0, 0, 1, 1},     {0, 0, 3, 5},      {-7, -9, 40, 33}, {5, 5, 205, 155},
+                                 {0, 0, 200, 150}, {-3, 60, -2, 300}, {11, 0, 411, 1}};
+  std::mt19937 random(3);
+  for (int i = 0; i < 100; ++i) {
+    const int x = static_cast<int>(random() % 40001) - 20000, y = static_cast<int>(random() % 40001) - 20000;
+    boxes.push_back(
+        {x, y, x + 1 + static_cast<int>(random() % 300), y + 1 + static_cast<int>(random() % 200)});
+  }
   for (const PixelBox& box : boxes) {
     for (std::int64_t job : {1, 7, 64, 1 << 20}) {
       if (job == 1 && box.area() > 2000) continue;
-      std::set<std::pair<int, int>> seen;
-      std::size_t visits = 0;
-      for (int level = 1; level <= Lattice::kMaxLevel; ++level) {
-        for (const auto& p : walkWhole(box, level, true, job)) {
-          ++visits;
-          seen.insert(p);
-          EXPECT_EQ(Lattice::levelOf(p.first, p.second), level);
-        }
-      }
-      EXPECT_EQ(visits, static_cast<std::size_t>(box.area()));
-      EXPECT_EQ(seen.size(), visits);
+      EXPECT_TRUE(wrong.within(static_cast<double>(wrongVisits(box, job)), 0)) << box.x0 << ", " << box.y0;
     }
+  }
+}
+
+TEST(WalkLattice, Hard21LevelsTogetherVisitEveryPixelOnceOfTheLargestImage) {
+  // Per pixel a bit; the visits add up to the area only when none comes twice.
+  HardCase wrong = HardCase::counting("pixels of 8192^2 and 16384^2 not visited exactly once", "pixels");
+  for (const int side : {8192, 16384}) {
+    const PixelBox box{0, 0, side, side};
+    std::vector<bool> seen(static_cast<std::size_t>(box.area()));
+    std::int64_t twice = 0, visits = 0;
+    for (int level = 1; level <= Lattice::kMaxLevel; ++level) {
+      walkLattice(box, beginLevel(box, level), box.area(), true, [&](int x, int y) {
+        const std::size_t i =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+        twice += seen[i];
+        seen[i] = true;
+        ++visits;
+      });
+    }
+    EXPECT_TRUE(wrong.within(static_cast<double>(twice + std::abs(box.area() - visits)), 0)) << side;
   }
 }
 
@@ -163,29 +200,27 @@ TEST(WalkLattice, EmptyBoxAndNoPoints) {
   EXPECT_EQ(walkLattice(box, beginLevel(box, 7), 0, false, [](int, int) { FAIL(); }), beginLevel(box, 7));
 }
 
-/// Covered pixels of one period of a level's lattice: with period 5^k in x and one point a row, a pixel (x,
+/// Bare pixels of one period of a level's lattice: with period 5^k in x and one point a row, a pixel (x,
 /// y) is covered iff some row y + d, |d| <= side / 2, has a point within side / 2 in x. By translation along
 /// the lattice it is enough to look at row 0.
-bool coversPlane(int level, int side) {
+std::ptrdiff_t holes(int level, int side) {
   const int half = side / 2, step = Lattice::step(level);
   std::vector<char> row(static_cast<std::size_t>(step), 0);
   for (int dy = -half; dy <= half; ++dy) {
     const auto center = static_cast<int>(Lattice::firstInRow(level, 0, dy));
     for (int dx = -half; dx <= half; ++dx) row[((center + dx) % step + step) % step] = 1;
   }
-  for (char covered : row) {
-    if (!covered) return false;
-  }
-  return true;
+  return std::count(row.begin(), row.end(), 0);
 }
 
-TEST(Splats, CoverThePlaneAtEveryLevelAndNoSmallerOddSideDoes) {
+TEST(Splats, Hard25CoverThePlaneAtEveryLevelAndNoSmallerOddSideDoes) {
+  HardCase bare = HardCase::counting("holes of the splat cover at every level", "pixels");
   for (int level = 1; level <= Lattice::kMaxLevel; ++level) {
     const int side = Lattice::splatSide(level);
     EXPECT_EQ(side % 2, 1);
-    EXPECT_TRUE(coversPlane(level, side)) << level;
+    EXPECT_TRUE(bare.within(static_cast<double>(holes(level, side)), 0)) << level;
     if (side > 1) {
-      EXPECT_FALSE(coversPlane(level, side - 2)) << level;
+      EXPECT_GT(holes(level, side - 2), 0) << level;
     }
   }
 }

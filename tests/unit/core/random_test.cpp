@@ -10,8 +10,12 @@
 #include <set>
 #include <vector>
 
+#include "tests/hard_case.h"
+
 namespace saccade::core {
 namespace {
+
+using tests::HardCase;
 
 /// Upper bound of chi-squared with n degrees of freedom, five standard deviations out.
 double chiSquaredLimit(int n) { return n + 5 * std::sqrt(2.0 * n); }
@@ -105,9 +109,35 @@ TEST(PixelSampler, DependsOnItsKeyAloneAndOnAllOfIt) {
   EXPECT_EQ(distinct.size(), 6u);
 }
 
-TEST(PixelSampler, StaysBelowOneForTheLargestBits) {
-  EXPECT_LT(detail::toUnitFloat(0xffffffffu), 1.0f);
+TEST(PixelSampler, Hard19StaysBelowOneForTheLargestBits) {
+  HardCase one = HardCase::counting("random numbers that reach 1", "numbers");
+  for (std::uint32_t below = 0; below < 1000; ++below) {
+    const float u = detail::toUnitFloat(0xffffffffu - below);
+    EXPECT_TRUE(one.within(!(u >= 0 && u < 1), 0)) << below;
+  }
   EXPECT_EQ(detail::toUnitFloat(0u), 0.0f);
+}
+
+TEST(PixelSampler, Hard20BeyondFourThousandMillionSubSamples) {
+  // Either side of every 2^32 the sequence is stratified, and it is not the one before.
+  constexpr std::uint32_t kCount = 1024;
+  HardCase strata =
+               HardCase::counting("strata of 1024 sub-samples beyond 2^32 that do not hold one", "strata"),
+           again = HardCase::counting("sub-samples beyond 2^32 that repeat those 2^32 before", "numbers");
+  for (const std::uint64_t start :
+       {(1ull << 32) - kCount, 1ull << 32, 1ull << 33, 5ull << 40, ~0ull - kCount + 1}) {
+    std::vector<int> hits(kCount, 0);
+    int repeated = 0;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const Vec2 p = pairAt(17, 4, start + i, 3), before = pairAt(17, 4, start + i - (1ull << 32), 3);
+      ++hits[static_cast<std::size_t>(p.x * 32) * 32 + static_cast<std::size_t>(p.y * 32)];
+      repeated += p == before;
+    }
+    int wrong = 0;
+    for (const int h : hits) wrong += h != 1;
+    EXPECT_TRUE(strata.within(wrong, 0)) << start;
+    EXPECT_TRUE(again.within(repeated, 0)) << start;
+  }
 }
 
 /// Moments and a chi-squared test on a 16 x 16 grid, over neighbouring pixels at one sub-sample.

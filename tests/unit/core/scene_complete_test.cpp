@@ -7,6 +7,7 @@
 #include "core/scene/clusters.h"
 #include "core/scene/load.h"
 #include "core/scene/mesh_repair.h"
+#include "tests/hard_case.h"
 #include "tests/unit/core/scene_shapes.h"
 
 namespace saccade::core {
@@ -124,7 +125,7 @@ TEST(CompleteScene, ThresholdDecidesWhoGetsAnId) {
   EXPECT_EQ(strict.idCount(), 1u);
 }
 
-TEST(CompleteScene, DropsWhatCannotBeDrawnAndCounts) {
+TEST(CompleteScene, Hard5DropsWhatCannotBeDrawnAndCounts) {
   Scene scene = twoMaterials();
   Mesh m = boxMesh(Vec3(0), Vec3(1));
   m.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0, 0);
@@ -134,8 +135,10 @@ TEST(CompleteScene, DropsWhatCannotBeDrawnAndCounts) {
   m.uv0.resize(3);
   addObject(scene, m, 3, 0);
   completeScene(scene, {});
-  EXPECT_EQ(scene.triangleCount(), 12u);
-  EXPECT_TRUE(warned(scene, "3 triangles were dropped"));
+  HardCase kept = HardCase::counting(
+      "NaN, zero-area and out-of-range triangles of a file that are kept or uncounted", "triangles");
+  EXPECT_TRUE(kept.near(static_cast<double>(scene.triangleCount()), 12, 0));
+  EXPECT_TRUE(kept.within(!warned(scene, "3 triangles were dropped"), 0));
   EXPECT_TRUE(warned(scene, "1 vertex arrays"));
   EXPECT_EQ(scene.bounds.hi, Vec3(1));
 }
@@ -145,7 +148,7 @@ TEST(CompleteScene, NothingLeftIsAnError) {
   EXPECT_THROW(completeScene(scene, {}), Error);
 }
 
-TEST(CompleteScene, SmallAndNeedleTrianglesSurvive) {
+TEST(CompleteScene, Hard5SmallAndNeedleTrianglesSurvive) {
   Scene scene = twoMaterials();
   Mesh m = boxMesh(Vec3(0), Vec3(1e-12f));
   addObject(scene, m, 3, 0);
@@ -154,7 +157,8 @@ TEST(CompleteScene, SmallAndNeedleTrianglesSurvive) {
   needle.indices = {0, 1, 2};
   addObject(scene, needle, 3, 1);
   completeScene(scene, {});
-  EXPECT_EQ(scene.triangleCount(), 13u);
+  EXPECT_TRUE(HardCase::counting("needles of a file that are lost", "triangles")
+                  .near(static_cast<double>(scene.triangleCount()), 13, 0));
 }
 
 TEST(CompleteScene, FlatNormalsAreTheFaces) {

@@ -76,7 +76,8 @@ TEST(Anisotropy, StretchesTheHighlightAcrossNothingButTheTangent) {
             10 * bsdf.eval(Patch::direction(0.7f, core::kPi / 2), kLobeAll).x);
 }
 
-TEST(Anisotropy, FurnaceNeverExceedsOne) {
+TEST(Anisotropy, Hard10FurnaceNeverExceedsOne) {
+  HardCase furnace("white furnace, anisotropic GGX");
   for (float metallic : {0.0f, 1.0f}) {
     for (float transmission : {0.0f, 1.0f}) {
       for (float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f}) {
@@ -87,8 +88,9 @@ TEST(Anisotropy, FurnaceNeverExceedsOne) {
               bind(s);
               const Estimate e = sampledAlbedo(s.at(cosine, azimuth), kLobeAll,
                                                metallic + transmission > 0 ? 2000 : 30000, 8);
-              EXPECT_LE(e.mean, 1 + 3 * e.sigma + 2e-3) << metallic << " " << transmission << " " << roughness
-                                                        << " " << strength << " " << cosine << " " << azimuth;
+              EXPECT_TRUE(furnace.within(e.mean - 1, 3 * e.sigma + 2e-3))
+                  << metallic << " " << transmission << " " << roughness << " " << strength << " " << cosine
+                  << " " << azimuth;
             }
           }
         }
@@ -97,7 +99,8 @@ TEST(Anisotropy, FurnaceNeverExceedsOne) {
   }
 }
 
-TEST(Anisotropy, Reciprocity) {
+TEST(Anisotropy, Hard14Reciprocity) {
+  HardCase ways("reciprocity, anisotropic GGX, relative above 1");
   std::mt19937 engine(10);
   std::uniform_real_distribution<float> u(0.05f, 1);
   for (int i = 0; i < 2000; ++i) {
@@ -106,11 +109,12 @@ TEST(Anisotropy, Reciprocity) {
     const Vec3 v = Patch::direction(u(engine), 6 * u(engine)), l = Patch::direction(u(engine), 6 * u(engine));
     const float forth = Bsdf(s.surface, v).eval(l, kLobeAll).x / l.z;
     const float back = Bsdf(s.surface, l).eval(v, kLobeAll).x / v.z;
-    ASSERT_NEAR(forth, back, 1e-4f * std::max(1.0f, forth));
+    ASSERT_TRUE(ways.within(std::fabs(forth - back) / std::max(1.0f, forth), 1e-4));
   }
 }
 
-TEST(Anisotropy, SampledDirectionsFollowTheDensity) {
+TEST(Anisotropy, Hard14SampledDirectionsFollowTheDensity) {
+  HardCase chance("chi-squared of directions, anisotropic GGX", "-log10 p");
   constexpr int kCases = 2 * 2 * 4;
   for (float cosine : {0.9f, 0.3f}) {
     for (float azimuth : {0.5f, 1.5f}) {
@@ -118,7 +122,7 @@ TEST(Anisotropy, SampledDirectionsFollowTheDensity) {
             glass = brushed(0, 0.6f, 0.7f, 1, true), sheet = brushed(0, 0.6f, 0.7f, 1, false);
       for (Patch* s : {&metal, &plastic, &glass, &sheet}) {
         bind(*s);
-        expectDensity(s->at(cosine, azimuth), kLobeAll, kCases);
+        expectDensity(s->at(cosine, azimuth), kLobeAll, kCases, chance);
       }
     }
   }

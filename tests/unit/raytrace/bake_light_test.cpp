@@ -9,12 +9,14 @@
 #include "raytrace/bake/direct.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
+#include "tests/hard_case.h"
 #include "tests/unit/raytrace/bake_scenes.h"
 
 namespace saccade::raytrace {
 namespace {
 
 using core::Vec3;
+using tests::HardCase;
 using Builder = SceneBuilder;
 
 BakeOptions optionsOf(const std::string& quality, std::uint64_t photons = 0) {
@@ -41,7 +43,7 @@ double rectangleAbove(double x0, double x1, double z0, double z1, double h) {
   return corner(x1, z1) - corner(x0, z1) - corner(x1, z0) + corner(x0, z0);
 }
 
-TEST(BakeLight, DiskLightWithinHalfAPercent) {
+TEST(BakeLight, Hard8DiskLightWithinHalfAPercent) {
   Builder b;
   const float r = 0.4f, h = 0.7f, radiance = 3;
   const int floor = b.quad(Builder::matte(0), Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2));
@@ -50,10 +52,11 @@ TEST(BakeLight, DiskLightWithinHalfAPercent) {
   b.scene.materials[0].baseColor = Vec3(0.5f);
   const Baked baked(std::move(b.scene), 64, optionsOf("medium", 1));
   const double truth = core::kPi * radiance * r * r / (r * r + h * h);
-  EXPECT_NEAR(baked.irradiance(floor, Vec3(0)).x / truth, 1, 0.005);
+  EXPECT_TRUE(HardCase("disk light in the maps, relative")
+                  .near(baked.irradiance(floor, Vec3(0)).x / truth, 1, 0.005));
 }
 
-TEST(BakeLight, RectangleAboveWithinOnePercentRms) {
+TEST(BakeLight, Hard8RectangleAboveWithinOnePercentRms) {
   Builder b;
   const int floor = b.quad(Builder::matte(0.5f), Vec3(-2, 0, 2), Vec3(4, 0, 0), Vec3(0, 0, -4));
   b.quad(Builder::matte(0, Vec3(2)), Vec3(-0.5f, 1, -0.3f), Vec3(1, 0, 0), Vec3(0, 0, 0.6f));
@@ -66,10 +69,11 @@ TEST(BakeLight, RectangleAboveWithinOnePercentRms) {
     squares += std::pow(baked.irradiance(floor, Vec3(x, 0, z)).x - truth, 2.0) / (n * n);
     mean += truth / (n * n);
   }
-  EXPECT_LT(std::sqrt(squares) / mean, 0.01);
+  EXPECT_TRUE(
+      HardCase("rectangle light in the maps, RMS of the mean").within(std::sqrt(squares) / mean, 0.01));
 }
 
-TEST(BakeLight, ParallelPlatesExchangeTheirFormFactorWithinOnePercent) {
+TEST(BakeLight, Hard8ParallelPlatesExchangeTheirFormFactorWithinOnePercent) {
   Builder b;  // two unit squares one apart; F = 0.1998
   const int lower = b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
   b.quad(Builder::matte(0, Vec3(1)), Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1));
@@ -79,7 +83,8 @@ TEST(BakeLight, ParallelPlatesExchangeTheirFormFactorWithinOnePercent) {
   for (int i = 0; i < n * n; ++i) {
     sum += baked.irradiance(lower, Vec3((i % n + 0.5f) / n, 0, (i / n + 0.5f) / n)).x;
   }
-  EXPECT_NEAR(sum / (n * n) / core::kPi, 0.19982, 0.01 * 0.19982);
+  EXPECT_TRUE(
+      HardCase("parallel plates in the maps, relative").near(sum / (n * n) / core::kPi / 0.199825, 1, 0.01));
 }
 
 TEST(BakeLight, PointLightFallsWithTheSquareWithinOnePercent) {
@@ -111,7 +116,7 @@ TEST(BakeLight, DirectionalLightIsItsCosine) {
   EXPECT_NEAR(baked.irradiance(floor, Vec3(0.3f, 0, 0.2f)).x, 4 * -sun.direction.y, 0.004);
 }
 
-TEST(BakeLight, ClosedFurnaceMeanWithinHalfAPercentRmsWithinFive) {
+TEST(BakeLight, Hard10ClosedFurnaceMeanWithinHalfAPercentRmsWithinFive) {
   Builder b;  // every wall glows with L and reflects one half: E = pi L / (1 - 0.5)
   b.box(Builder::matte(0.5f, Vec3(1)), Vec3(0), Vec3(1, 1.2f, 0.8f), true);
   const Baked baked(std::move(b.scene), 64, optionsOf("medium", 400000));
@@ -128,11 +133,11 @@ TEST(BakeLight, ClosedFurnaceMeanWithinHalfAPercentRmsWithinFive) {
       ++n;
     }
   }
-  EXPECT_NEAR(sum / n, 1, 0.005);
-  EXPECT_LT(std::sqrt(squares / n), 0.05);
+  EXPECT_TRUE(HardCase("closed furnace in the maps, mean").near(sum / n, 1, 0.005));
+  EXPECT_TRUE(HardCase("closed furnace in the maps, RMS").within(std::sqrt(squares / n), 0.05));
 }
 
-TEST(BakeLight, AThinWallKeepsTheDarkRoomDark) {
+TEST(BakeLight, Hard3AThinWallKeepsTheDarkRoomDark) {
   Builder b;  // two closed rooms, 1 cm between their walls; a lamp in the left one only
   b.box(Builder::matte(0.7f), Vec3(0), Vec3(1), true);
   b.box(Builder::matte(0.7f), Vec3(1.01f, 0, 0), Vec3(2.01f, 1, 1), true);
@@ -148,7 +153,7 @@ TEST(BakeLight, AThinWallKeepsTheDarkRoomDark) {
     }
   }
   EXPECT_GT(lit, 1);
-  EXPECT_EQ(dark, 0);
+  EXPECT_TRUE(HardCase("light through a thin wall in the maps").within(dark, 0));
 }
 
 TEST(BakeLight, AWallOnOneFloorLeaksNoFurtherThanThreeTexels) {
@@ -212,6 +217,30 @@ TEST(BakeLight, ParticlesCarryTheFluxThatBouncesWithinOnePercent) {
   EXPECT_NEAR(arrived * wattsPerWeight(world, state.emitted) / (6 * core::kPi), 1, 0.01);
 }
 
+TEST(BakeLight, Hard20ParticlesBeyondFourThousandMillion) {
+  // As above, but those emitted so far are 2^32 and more: the next ones carry their share all the same.
+  HardCase share("flux of 200,000 particles after 2^32 and 2^40, relative");
+  for (const std::uint64_t before : {(1ull << 32) - 100000, 1ull << 40}) {
+    Builder b;
+    b.box(Builder::matte(0.5f, Vec3(1)), Vec3(0), Vec3(1), true);
+    core::Plan plan;
+    plan.lightmapSize = 64;
+    const ChartAtlas atlas = makeCharts(b.scene, plan, 64);
+    core::applyCharts(b.scene, atlas.charts);
+    const World world(b.scene, plan);
+    const TexelMap texels(b.scene, atlas.size);
+    ParticleState state(texels.texelCount(), 1);
+    state.emitted = before;
+    traceParticles(world, texels, before + 200000, 1, 2, {}, {}, state);
+    ASSERT_EQ(state.emitted, before + 200000);
+    double arrived = 0;
+    for (std::size_t t = 0; t < texels.texelCount(); ++t)
+      arrived += static_cast<double>(state.flux.cell(t, 0).rgb[1]) / FluxGrid::kUnitsPerWeight;
+    const double truth = 6 * core::kPi * 200000 / static_cast<double>(before + 200000);
+    EXPECT_TRUE(share.near(arrived * wattsPerWeight(world, state.emitted) / truth, 1, 0.01)) << before;
+  }
+}
+
 TEST(BakeLight, AFaceThatTheFileHoldsTwiceIsLitTwice) {
   Builder b;  // rays meet only the first of equal triangles
   b.box(Builder::matte(0.7f), Vec3(0), Vec3(1), true);
@@ -247,15 +276,17 @@ core::Scene smallRoom() {
   return std::move(b.scene);
 }
 
-TEST(BakeLight, TheSameBitsForAnyNumberOfThreads) {
+TEST(BakeLight, Hard28TheSameBitsForAnyNumberOfThreads) {
   BakeOptions options = optionsOf("preview", 20000);
   options.threads = 0;
   const Baked reference(smallRoom(), 64, options);
   EXPECT_EQ(reference.maps().layers, 2);
+  HardCase changed =
+      HardCase::counting("numbers of the maps on 1, 2 and 8 threads that differ from 0", "numbers");
   for (const int threads : {1, 2, 8}) {
     options.threads = threads;
-    EXPECT_EQ(Baked(smallRoom(), 64, options).maps().texels, reference.maps().texels)
-        << threads << " threads";
+    const Baked again(smallRoom(), 64, options);
+    EXPECT_TRUE(changed.within(tests::differing(again.maps().texels, reference.maps().texels), 0)) << threads;
   }
   options.seed = 2;
   EXPECT_NE(Baked(smallRoom(), 64, options).maps().texels, reference.maps().texels);
@@ -299,6 +330,25 @@ TEST(BakeLight, ProgressRisesToOneAndAStopEndsTheBake) {
   stopped.stop = source.get_token();
   EXPECT_THROW(bakeMaps(world, atlas.charts, atlas.size, optionsOf("preview"), stopped), core::Error);
   EXPECT_THROW(bakeMaps(world, atlas.charts, atlas.size, optionsOf("best"), {}), core::UsageError);
+}
+
+TEST(BakeLight, Hard22FireflyIsClampedAndItsEnergyReported) {
+  // A lamp above a plate, once of the radiance of a lamp, once 10^30: what is kept and what is reported left
+  // out add up to what the plate receives.
+  const auto bake = [](float radiance) {
+    Builder b;
+    b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
+    b.quad(Builder::matte(0, Vec3(radiance)), Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1));
+    return Baked(std::move(b.scene), 32, optionsOf("preview", 1000));
+  };
+  EXPECT_EQ(bake(1).maps().clampedTexels, 0u);
+  HardCase energy("kept and clamped energy of a 1e30 firefly in the maps, relative"),
+      unsound = HardCase::counting("texels of the maps beyond 65504 under a 1e30 firefly", "texels");
+  const Baked lit = bake(1e30f);
+  EXPECT_TRUE(energy.near(lit.maps().clampedWatts / (1e30 * core::kPi * 0.199825), 1, 0.01));
+  int beyond = 0;
+  for (const std::uint16_t half : lit.maps().texels) beyond += half > 0x7BFF;
+  EXPECT_TRUE(unsound.within(beyond, 0));
 }
 
 TEST(BakeLight, NoLightGivesBlackMapsAndATexelNeverHoldsNaN) {

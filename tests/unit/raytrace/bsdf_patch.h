@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "raytrace/bsdf.h"
+#include "tests/hard_case.h"
 
 namespace saccade::tests {
 
@@ -79,8 +80,8 @@ inline double chiSquaredTail(double x, double freedom) {
 
 /// Directions of sample() against pdf() over cells of cosine and azimuth on the whole sphere, and the samples
 /// that are dropped against what is missing from 1. Fails below 0.001 by chance over `cases` such tests
-/// (Bonferroni). For lobes without deltas, smooth at a degree.
-inline void expectDensity(const Bsdf& bsdf, unsigned lobes, int cases) {
+/// (Bonferroni). For lobes without deltas, smooth at a degree. `chance` is told -log10 of the probability.
+inline void expectDensity(const Bsdf& bsdf, unsigned lobes, int cases, HardCase& chance) {
   constexpr int kRows = 30, kColumns = 16, kSamples = 60000, kSub = 16;
   std::vector<double> expected(kRows * kColumns + 1), seen(kRows * kColumns + 1);
   std::mt19937 engine(12);
@@ -126,7 +127,7 @@ inline void expectDensity(const Bsdf& bsdf, unsigned lobes, int cases) {
     }
   }
   if (pooledExpected >= 20) add(pooledExpected, pooledSeen);
-  EXPECT_GT(chiSquaredTail(chi, freedom), 0.001 / cases)
+  EXPECT_TRUE(chance.within(-std::log10(chiSquaredTail(chi, freedom)), -std::log10(0.001 / cases)))
       << chi << " with " << freedom << " degrees of freedom";
 }
 

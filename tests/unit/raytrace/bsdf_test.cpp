@@ -1,4 +1,4 @@
-// Numerics 10, 11, 13-17, 19 of the hard cases: scattering.
+// Numerics 10, 11, 13, 14, 16, 17 of the hard cases: scattering by the lobes without extensions.
 #include "raytrace/bsdf.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/scene/specular_albedo.h"
+#include "tests/hard_case.h"
 #include "tests/unit/raytrace/bsdf_patch.h"
 
 namespace saccade::raytrace {
@@ -16,7 +17,8 @@ using namespace tests;
 const float kCosines[] = {1.0f, 0.9f, 0.5f, 0.2f, 0.05f};
 const float kRoughness[] = {0.0f, 0.05f, 0.1f, 0.3f, 0.5f, 0.7f, 1.0f};
 
-TEST(Bsdf, MetalAlbedoEqualsTheTable) {
+TEST(Bsdf, Hard10MetalAlbedoEqualsTheTable) {
+  HardCase table("albedo of GGX metal against its table");
   for (float roughness : kRoughness) {
     for (float cosine : kCosines) {
       Patch s = patch(1, roughness, 0, false);
@@ -25,21 +27,35 @@ TEST(Bsdf, MetalAlbedoEqualsTheTable) {
       const Estimate e = sampledAlbedo(s.at(cosine), kLobeSpecular, 100000, 7);
       const core::AlbedoPair pair = core::directionalAlbedo(cosine, roughness);
       // Beside the noise, the error of the table's own quadrature and interpolation.
-      EXPECT_NEAR(e.mean, 0.7f * pair.scale + pair.bias, 3 * e.sigma + 6e-3) << roughness << " " << cosine;
-      EXPECT_LE(e.mean, 1 + 3 * e.sigma);
+      EXPECT_TRUE(table.near(e.mean, 0.7f * pair.scale + pair.bias, 3 * e.sigma + 6e-3))
+          << roughness << " " << cosine;
     }
   }
 }
 
-TEST(Bsdf, FurnaceNeverExceedsOne) {
+TEST(Bsdf, Hard10SingleScatterGgxOfAlphaOneReflectsOneMinusTheLogarithmOfTwo) {
+  // v = n: Lambda(v) = 0 and D = 1/pi, so that E = integral of c / (1 + c) over c in [0, 1].
+  const double exact = 1 - std::log(2.0);
+  Patch s = patch(1, 1, 0, false);
+  bind(s);
+  const Estimate e = sampledAlbedo(s.at(1), kLobeSpecular, 200000, 7);
+  EXPECT_TRUE(HardCase("single-scatter GGX, alpha 1, normal incidence, by sampling")
+                  .near(e.mean, exact, 3 * e.sigma));
+  const core::AlbedoPair pair = core::directionalAlbedo(1, 1);
+  EXPECT_TRUE(HardCase("single-scatter GGX, alpha 1, normal incidence, the table")
+                  .near(pair.scale + pair.bias, exact, 6e-3));
+}
+
+TEST(Bsdf, Hard10FurnaceNeverExceedsOne) {
+  HardCase furnace("white furnace, metal, plastic, glass and mixtures");
   struct Kind {
     float metallic, transmission;
     bool closed;
     float ior;
   };
-  const Kind kinds[] = {{0, 0, false, 1.5f},   {0.5f, 0, false, 1.5f}, {0, 1, true, 1.5f},
-                        {0, 1, false, 1.5f},   {0, 0.5f, true, 1.3f},  {0, 0, false, 3},
-                        {0.3f, 0.6f, true, 2}, {0, 1, true, 1}};
+  const Kind kinds[] = {{1, 0, false, 1.5f}, {0, 0, false, 1.5f},   {0.5f, 0, false, 1.5f},
+                        {0, 1, true, 1.5f},  {0, 1, false, 1.5f},   {0, 0.5f, true, 1.3f},
+                        {0, 0, false, 3},    {0.3f, 0.6f, true, 2}, {0, 1, true, 1}};
   for (const Kind& k : kinds) {
     for (float roughness : kRoughness) {
       for (float cosine : kCosines) {
@@ -49,7 +65,7 @@ TEST(Bsdf, FurnaceNeverExceedsOne) {
           s.surface.front = front;
           bind(s);
           const Estimate e = sampledAlbedo(s.at(cosine), kLobeAll, 20000, 8);
-          EXPECT_LE(e.mean, 1 + 3 * e.sigma + 2e-3)
+          EXPECT_TRUE(furnace.within(e.mean - 1, 3 * e.sigma + 2e-3))
               << "metallic " << k.metallic << " transmission " << k.transmission << " ior " << k.ior
               << " roughness " << roughness << " cosine " << cosine << " front " << front;
         }
@@ -58,7 +74,8 @@ TEST(Bsdf, FurnaceNeverExceedsOne) {
   }
 }
 
-TEST(Bsdf, SmoothGlassLosesNothing) {
+TEST(Bsdf, Hard10SmoothGlassLosesNothing) {
+  HardCase lost("white furnace, smooth glass: reflected and transmitted sum to 1");
   for (bool closed : {true, false}) {
     for (float cosine : kCosines) {
       Patch s = patch(0, 0, 1, closed);
@@ -66,7 +83,7 @@ TEST(Bsdf, SmoothGlassLosesNothing) {
       const Bsdf bsdf = s.at(cosine);
       const auto through = bsdf.deltaTransmission();
       ASSERT_TRUE(through);
-      EXPECT_NEAR(bsdf.deltaReflection().weight.x + through->weight.x, 1, 1e-6);
+      EXPECT_TRUE(lost.near(bsdf.deltaReflection().weight.x + through->weight.x, 1, 1e-6)) << cosine;
     }
   }
 }
@@ -84,7 +101,9 @@ TEST(Bsdf, LayeredLambertUnderConstantLightIsWhatTheMapsGive) {
   }
 }
 
-TEST(Bsdf, RoughnessTowardsZeroJoinsTheMirror) {
+TEST(Bsdf, Hard11RoughnessTowardsZeroJoinsTheMirror) {
+  HardCase jump("direction at the threshold of metal and glass", "radians"),
+      step("weight at the threshold of metal and glass");
   // Roughness just above and below the threshold: same directions, same weights.
   const float threshold = std::sqrt(kDeltaAlpha);
   for (float transmission : {0.0f, 1.0f}) {
@@ -100,47 +119,34 @@ TEST(Bsdf, RoughnessTowardsZeroJoinsTheMirror) {
         const auto x = a.sample(uLobe, {0.5f, 0.3f}, kLobeSpecular),
                    y = b.sample(uLobe, {0.5f, 0.3f}, kLobeSpecular);
         ASSERT_TRUE(x && y);
-        EXPECT_LT(glm::length(x->direction - y->direction), 0.02f);
-        EXPECT_NEAR(x->weight.x, y->weight.x, 0.01);
+        EXPECT_TRUE(jump.within(glm::length(x->direction - y->direction), 0.02)) << cosine;
+        EXPECT_TRUE(step.near(x->weight.x, y->weight.x, 0.01)) << cosine;
       }
     }
   }
 }
 
-TEST(Bsdf, DensityOfFacetNormals) {
+TEST(Bsdf, Hard11DensityOfFacetNormals) {
+  HardCase peak("D(0) = 1 / (pi alpha^2), relative"), projected("projected area of GGX facets is 1");
   for (float alpha : {1e-3f, 0.1f, 1.0f}) {
-    EXPECT_FLOAT_EQ(ggxD({0, 0, 1}, alpha), 1 / (core::kPi * alpha * alpha));
-    // Projected area: the integral of D cos = 1 (Walter 2007, equation 4), t = tan^2.
+    const double exact = 1 / (M_PI * alpha * alpha);
+    EXPECT_TRUE(peak.near(ggxD({0, 0, 1}, alpha) / exact, 1, 5e-7)) << alpha;
+  }
+  for (float alpha : {0.1f, 1.0f}) {
+    // The integral of D cos = 1 (Walter 2007, equation 4).
     double sum = 0;
     constexpr int kSteps = 200000;
     for (int i = 0; i < kSteps; ++i) {
-      const double u = (i + 0.5) / kSteps;
-      const double cosine = u, sine = std::sqrt(1 - u * u);
-      if (alpha < 0.01f) continue;
-      sum +=
-          2 * M_PI * ggxD({static_cast<float>(sine), 0, static_cast<float>(cosine)}, alpha) * cosine / kSteps;
+      const double cosine = (i + 0.5) / kSteps, sine = std::sqrt(1 - cosine * cosine);
+      const Vec3 h(static_cast<float>(sine), 0, static_cast<float>(cosine));
+      sum += 2 * M_PI * ggxD(h, alpha) * cosine / kSteps;
     }
-    if (alpha >= 0.01f) {
-      EXPECT_NEAR(sum, 1, 2e-3);
-    }
+    EXPECT_TRUE(projected.near(sum, 1, 2e-3)) << alpha;
   }
 }
 
-TEST(Fresnel, Dielectric) {
-  EXPECT_NEAR(fresnelDielectric(1, 1.5f), 0.04, 1e-6);
-  EXPECT_NEAR(fresnelDielectric(1, 1 / 1.5f), 0.04, 1e-6);
-  EXPECT_FLOAT_EQ(fresnelDielectric(0, 1.5f), 1);
-  for (float c : {1.0f, 0.5f, 0.1f}) EXPECT_NEAR(fresnelDielectric(c, 1), 0, 1e-6);
-  // Total internal reflection joins at the critical angle: cos^2 = 1 - eta^2.
-  const float eta = 1 / 1.5f, critical = std::sqrt(1 - eta * eta);
-  EXPECT_EQ(fresnelDielectric(critical * 0.999f, eta), 1);
-  EXPECT_GT(fresnelDielectric(critical * 1.000001f, eta), 0.98f);
-  // Stokes: the same from both sides along one path.
-  const float cosI = 0.7f, sinT = std::sqrt(1 - cosI * cosI) / 1.5f;
-  EXPECT_NEAR(fresnelDielectric(cosI, 1.5f), fresnelDielectric(std::sqrt(1 - sinT * sinT), 1 / 1.5f), 1e-6);
-}
-
-TEST(Bsdf, Reciprocity) {
+TEST(Bsdf, Hard14Reciprocity) {
+  HardCase ways("reciprocity, metal and plastic, relative above 1");
   std::mt19937 engine(10);
   std::uniform_real_distribution<float> u(0.05f, 1);
   for (int i = 0; i < 2000; ++i) {
@@ -151,11 +157,12 @@ TEST(Bsdf, Reciprocity) {
     const Vec3 l(std::sqrt(1 - cl * cl) * std::cos(phi), std::sqrt(1 - cl * cl) * std::sin(phi), cl);
     const float forth = Bsdf(s.surface, v).eval(l, kLobeAll).x / l.z;
     const float back = Bsdf(s.surface, l).eval(v, kLobeAll).x / v.z;
-    ASSERT_NEAR(forth, back, 1e-4f * std::max(1.0f, forth));
+    ASSERT_TRUE(ways.within(std::fabs(forth - back) / std::max(1.0f, forth), 1e-4));
   }
 }
 
-TEST(Bsdf, ReciprocityThroughAnInterface) {
+TEST(Bsdf, Hard14ReciprocityThroughAnInterface) {
+  HardCase ways("reciprocity through rough glass, relative above 1");
   // Without the radiance's eta^2, f(v -> l) / eta_l^2 is what both ways share (Walter 2007, section 5.2).
   std::mt19937 engine(11);
   std::uniform_real_distribution<float> u(0.2f, 1);
@@ -170,11 +177,12 @@ TEST(Bsdf, ReciprocityThroughAnInterface) {
     behind.front = false;
     behind.ng = behind.ns = Vec3(0, 0, -1);
     const float back = Bsdf(behind, l).eval(v, kLobeSpecular).x / cv;
-    ASSERT_NEAR(forth, 1.5f * 1.5f * back, 1e-3f * std::max(1.0f, forth)) << i;
+    ASSERT_TRUE(ways.within(std::fabs(forth - 2.25f * back) / std::max(1.0f, forth), 1e-3)) << i;
   }
 }
 
-TEST(Bsdf, SampledDirectionsFollowTheDensity) {
+TEST(Bsdf, Hard14SampledDirectionsFollowTheDensity) {
+  HardCase chance("chi-squared of directions, metal, plastic, glass and sheets", "-log10 p");
   constexpr int kCases = 3 * 3 * 4;
   for (float roughness : {0.5f, 0.8f, 1.0f}) {
     for (float cosine : {0.95f, 0.5f, 0.2f}) {
@@ -182,10 +190,10 @@ TEST(Bsdf, SampledDirectionsFollowTheDensity) {
       Patch metal = patch(1, roughness, 0, false), plastic = patch(0, roughness, 0, false);
       Patch glass = patch(0, roughness, 1, true), sheet = patch(0, roughness, 1, false);
       for (Patch* s : {&metal, &plastic, &glass, &sheet}) bind(*s);
-      expectDensity(metal.at(cosine), kLobeAll, kCases);
-      expectDensity(plastic.at(cosine), kLobeAll, kCases);
-      expectDensity(glass.at(cosine), kLobeSpecular, kCases);
-      expectDensity(sheet.at(cosine), kLobeSpecular, kCases);
+      expectDensity(metal.at(cosine), kLobeAll, kCases, chance);
+      expectDensity(plastic.at(cosine), kLobeAll, kCases, chance);
+      expectDensity(glass.at(cosine), kLobeSpecular, kCases, chance);
+      expectDensity(sheet.at(cosine), kLobeSpecular, kCases, chance);
     }
   }
 }
@@ -204,68 +212,40 @@ TEST(Bsdf, WeightIsValueOverDensity) {
   }
 }
 
-TEST(Bsdf, OppositeDirectionsAndExtremeNumbersStayFinite) {
-  for (float roughness : {0.05f, 0.5f, 1.0f}) {
-    for (float ior : {1.0f, 1.0005f, 1.5f}) {
-      for (bool front : {true, false}) {
-        Patch s = patch(0.2f, roughness, 0.7f, true, ior);
-        s.surface.front = front;
-        bind(s);
-        for (float cosine : {1.0f, 0.3f, 1e-7f, 0.0f}) {
-          const Vec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
-          const Bsdf bsdf(s.surface, v);
-          for (const Vec3& wi : {-v, v, Vec3(-v.x, 0, v.z), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, -1)}) {
-            const Vec3 f = bsdf.eval(wi, kLobeAll);
-            EXPECT_TRUE(std::isfinite(f.x) && f.x >= 0);
-            const float p = bsdf.pdf(wi, kLobeAll);
-            EXPECT_TRUE(std::isfinite(p) && p >= 0);
-          }
-          for (float a : {0.0f, 0.5f, 0.99999994f, 1.0f}) {
-            const auto x = bsdf.sample(std::min(a, 0.99999994f), {a, a}, kLobeAll);
-            if (!x) continue;
-            EXPECT_TRUE(std::isfinite(x->weight.x) && x->weight.x >= 0 && std::isfinite(x->pdf))
-                << "roughness " << roughness << " ior " << ior << " front " << front << " cosine " << cosine
-                << " u " << a << " weight " << x->weight.x << " pdf " << x->pdf;
-            EXPECT_NEAR(glm::length(x->direction), 1, 1e-4);
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(Bsdf, NormalsThatDisagreeLeakNoLight) {
+TEST(Bsdf, Hard16NormalsThatDisagreeLeakNoLight) {
   std::mt19937 engine(14);
   std::uniform_real_distribution<float> u(-1, 1);
-  for (int i = 0; i < 3000; ++i) {
+  int evaluated = 0, sampled = 0;
+  for (int i = 0; i < 30000; ++i) {
     Patch s = patch(i % 2 ? 1.0f : 0.0f, i % 4 ? 0.4f : 0.0f, 0, false);
     bind(s);
     s.surface.ns = glm::normalize(Vec3(u(engine), u(engine), std::fabs(u(engine)) + 0.05f));
     const Vec3 v = glm::normalize(Vec3(u(engine), u(engine), std::fabs(u(engine)) + 0.05f));
     if (glm::dot(v, s.surface.ns) <= 0) continue;
     const Bsdf bsdf(s.surface, v);
-    Vec3 below = glm::normalize(Vec3(u(engine), u(engine), -std::fabs(u(engine)) - 0.01f));
-    EXPECT_EQ(bsdf.eval(below, kLobeAll), Vec3(0));
+    const Vec3 below = glm::normalize(Vec3(u(engine), u(engine), -std::fabs(u(engine)) - 0.01f));
+    evaluated += bsdf.eval(below, kLobeAll) != Vec3(0);
     const auto x = bsdf.sample(0.5f * (u(engine) + 1) * 0.999f, Vec2(0.3f, 0.7f), kLobeAll);
-    if (x) {
-      EXPECT_GT(x->direction.z, 0);
-    }
+    sampled += x && !(x->direction.z > 0);
   }
+  EXPECT_TRUE(HardCase::counting("light from below the surface", "directions").within(evaluated, 0));
+  EXPECT_TRUE(HardCase::counting("directions drawn below the surface", "directions").within(sampled, 0));
 }
 
-TEST(Frame, IsOrthonormalEverywhere) {
+TEST(Frame, Hard17IsOrthonormalEverywhere) {
   std::mt19937 engine(15);
   std::uniform_real_distribution<float> u(-1, 1);
-  std::vector<Vec3> normals = {
-      {0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}, glm::normalize(Vec3(1e-4f, 0, -1))};
+  std::vector<Vec3> normals = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0, 0, -0.99999994f}};
+  for (float e = 1e-2f; e > 1e-38f; e *= 0.1f) normals.push_back(glm::normalize(Vec3(e, -e, -1)));
   for (int i = 0; i < 1000; ++i)
     normals.push_back(glm::normalize(Vec3(u(engine), u(engine), u(engine) + 1e-3f)));
+  HardCase error("basis at (0, 0, -1) and around: departure from orthonormal");
   for (const Vec3& n : normals) {
     const Frame f(n);
-    EXPECT_NEAR(glm::dot(f.t, f.b), 0, 1e-5);
-    EXPECT_NEAR(glm::dot(f.t, f.n), 0, 1e-5);
-    EXPECT_NEAR(glm::dot(glm::cross(f.t, f.b), f.n), 1, 1e-5);
-    EXPECT_LT(glm::length(f.toWorld(f.toLocal(Vec3(1, 2, 3))) - Vec3(1, 2, 3)), 1e-4f);
+    for (const float product : {glm::dot(f.t, f.b), glm::dot(f.t, f.n), glm::dot(f.b, f.n)})
+      EXPECT_TRUE(error.near(product, 0, 1e-6)) << n.z;
+    for (const float square : {glm::dot(f.t, f.t), glm::dot(f.b, f.b), glm::dot(glm::cross(f.t, f.b), f.n)})
+      EXPECT_TRUE(error.near(square, 1, 1e-6)) << n.z;
   }
 }
 

@@ -43,28 +43,30 @@ Patch overNothing(float coat, float coatRoughness, const Vec3& sheen, float shee
   return s;
 }
 
-TEST(Coat, AlbedoEqualsTheTable) {
+TEST(Coat, Hard10AlbedoEqualsTheTable) {
+  HardCase table("albedo of clearcoat against its table");
   for (float roughness : kRoughness) {
     for (float cosine : kCosines) {
       Patch s = overNothing(1, roughness, Vec3(0), 0);
       bind(s);
       const Estimate e = sampledAlbedo(s.at(cosine), kLobeAll, 40000, 7);
       // Beside the noise, the error of the table's own quadrature and interpolation.
-      EXPECT_NEAR(e.mean, 1 - core::coatTransmission(1, roughness, cosine), 3 * e.sigma + 4e-3)
+      EXPECT_TRUE(table.near(e.mean, 1 - core::coatTransmission(1, roughness, cosine), 3 * e.sigma + 4e-3))
           << roughness << " " << cosine;
     }
   }
 }
 
-TEST(Sheen, AlbedoEqualsTheTable) {
+TEST(Sheen, Hard10AlbedoEqualsTheTable) {
+  HardCase table("albedo of sheen against its table"), furnace("white furnace, sheen, its table");
   for (float roughness : kRoughness) {
     for (float cosine : kCosines) {
       Patch s = overNothing(0, 0, Vec3(1, 0.5f, 0), roughness);
       bind(s);
       const Estimate e = sampledAlbedo(s.at(cosine), kLobeAll, 100000, 8);
-      EXPECT_NEAR(e.mean, core::sheenAlbedo(cosine, roughness), 3 * e.sigma + 2e-3)
+      EXPECT_TRUE(table.near(e.mean, core::sheenAlbedo(cosine, roughness), 3 * e.sigma + 2e-3))
           << roughness << " " << cosine;
-      EXPECT_LE(core::sheenAlbedo(cosine, roughness), 1);
+      EXPECT_TRUE(furnace.within(core::sheenAlbedo(cosine, roughness) - 1, 0));
     }
   }
 }
@@ -80,7 +82,8 @@ TEST(Sheen, MeanAlbedoIsTheMeanOfTheTable) {
   }
 }
 
-TEST(Layers, FurnaceNeverExceedsOne) {
+TEST(Layers, Hard10FurnaceNeverExceedsOne) {
+  HardCase furnace("white furnace, clearcoat and sheen over eight bases");
   for (const Base& base : kBases) {
     for (float roughness : kRoughness) {
       for (float cosine : kCosines) {
@@ -92,7 +95,7 @@ TEST(Layers, FurnaceNeverExceedsOne) {
             s.surface.front = front;
             bind(s);
             const Estimate e = sampledAlbedo(s.at(cosine), kLobeAll, 4000, 9);
-            EXPECT_LE(e.mean, 1 + 4 * e.sigma + 2e-3)
+            EXPECT_TRUE(furnace.within(e.mean - 1, 4 * e.sigma + 2e-3))
                 << base.name << " layers " << layers << " roughness " << roughness << " cosine " << cosine
                 << " front " << front;
           }
@@ -102,7 +105,8 @@ TEST(Layers, FurnaceNeverExceedsOne) {
   }
 }
 
-TEST(Layers, CoatWithANormalOfItsOwnStaysWithinTheFurnace) {
+TEST(Layers, Hard10CoatWithANormalOfItsOwnStaysWithinTheFurnace) {
+  HardCase furnace("white furnace, clearcoat with a normal of its own");
   for (float tilt : {0.2f, 0.6f}) {
     for (float azimuth : {0.0f, 2.0f, 4.0f}) {
       for (float cosine : kCosines) {
@@ -110,7 +114,8 @@ TEST(Layers, CoatWithANormalOfItsOwnStaysWithinTheFurnace) {
         s.extension().coatNormal = Patch::direction(std::cos(tilt), azimuth);
         bind(s);
         const Estimate e = sampledAlbedo(s.at(cosine), kLobeAll, 20000, 10);
-        EXPECT_LE(e.mean, 1 + 4 * e.sigma + 2e-3) << tilt << " " << azimuth << " " << cosine;
+        EXPECT_TRUE(furnace.within(e.mean - 1, 4 * e.sigma + 2e-3))
+            << tilt << " " << azimuth << " " << cosine;
       }
     }
   }
@@ -149,7 +154,8 @@ TEST(Layers, BaseFactorIsTheMeanOfWhatTheMapsGive) {
   EXPECT_NEAR(core::baseDiffuseFactor(core::Scene{}, m), sum, 1e-3);
 }
 
-TEST(Layers, Reciprocity) {
+TEST(Layers, Hard14Reciprocity) {
+  HardCase ways("reciprocity under clearcoat and sheen, relative above 1");
   std::mt19937 engine(10);
   std::uniform_real_distribution<float> u(0.05f, 1);
   for (int i = 0; i < 3000; ++i) {
@@ -160,11 +166,12 @@ TEST(Layers, Reciprocity) {
     const Vec3 v = Patch::direction(u(engine), 6 * u(engine)), l = Patch::direction(u(engine), 6 * u(engine));
     const float forth = Bsdf(s.surface, v).eval(l, kLobeAll).x / l.z;
     const float back = Bsdf(s.surface, l).eval(v, kLobeAll).x / v.z;
-    ASSERT_NEAR(forth, back, 1e-4f * std::max(1.0f, forth)) << i;
+    ASSERT_TRUE(ways.within(std::fabs(forth - back) / std::max(1.0f, forth), 1e-4)) << i;
   }
 }
 
-TEST(Layers, ReciprocityThroughACoatedInterface) {
+TEST(Layers, Hard14ReciprocityThroughACoatedInterface) {
+  HardCase ways("reciprocity through coated glass, relative above 1");
   // Without the radiance's eta^2 (Walter 2007, section 5.2); the coat is crossed once either way.
   std::mt19937 engine(11);
   std::uniform_real_distribution<float> u(0.2f, 1);
@@ -180,11 +187,12 @@ TEST(Layers, ReciprocityThroughACoatedInterface) {
     behind.front = false;
     behind.ng = behind.ns = behind.point.extension->coatNormal = Vec3(0, 0, -1);
     const float back = Bsdf(behind, l).eval(v, kLobeSpecular).x / v.z;
-    ASSERT_NEAR(forth, 1.5f * 1.5f * back, 1e-3f * std::max(1.0f, forth)) << i;
+    ASSERT_TRUE(ways.within(std::fabs(forth - 2.25f * back) / std::max(1.0f, forth), 1e-3)) << i;
   }
 }
 
-TEST(Layers, SampledDirectionsFollowTheDensity) {
+TEST(Layers, Hard14SampledDirectionsFollowTheDensity) {
+  HardCase chance("chi-squared of directions, clearcoat and sheen", "-log10 p");
   constexpr int kCases = 2 * 3 * 4;
   for (float cosine : {0.8f, 0.3f}) {
     for (int layers = 1; layers <= 3; ++layers) {
@@ -196,7 +204,7 @@ TEST(Layers, SampledDirectionsFollowTheDensity) {
         Patch s = over(rough, layers & 1 ? 1.0f : 0.0f, 0.6f, Vec3(layers & 2 ? 1.0f : 0.0f), 0.5f);
         s.extension().coatNormal = Patch::direction(0.95f, 1);
         bind(s);
-        expectDensity(s.at(cosine, 0.7f), kLobeAll, kCases);
+        expectDensity(s.at(cosine, 0.7f), kLobeAll, kCases, chance);
       }
     }
   }
@@ -232,7 +240,9 @@ TEST(Layers, AMirrorsWeightsAddUpToWhatItReflects) {
   }
 }
 
-TEST(Layers, CoatRoughnessTowardsZeroJoinsTheMirror) {
+TEST(Layers, Hard11CoatRoughnessTowardsZeroJoinsTheMirror) {
+  HardCase jump("direction at the threshold of clearcoat", "radians"),
+      step("weight at the threshold of clearcoat");
   const float threshold = std::sqrt(kDeltaAlpha);
   for (float cosine : {1.0f, 0.5f, 0.1f}) {
     Patch smooth = overNothing(1, threshold * 0.99f, Vec3(0), 0),
@@ -244,8 +254,8 @@ TEST(Layers, CoatRoughnessTowardsZeroJoinsTheMirror) {
     ASSERT_TRUE(x && y);
     EXPECT_TRUE(x->delta);
     EXPECT_FALSE(y->delta);
-    EXPECT_LT(glm::length(x->direction - y->direction), 0.02f);
-    EXPECT_NEAR(x->weight.x, y->weight.x, 0.01);
+    EXPECT_TRUE(jump.within(glm::length(x->direction - y->direction), 0.02)) << cosine;
+    EXPECT_TRUE(step.near(x->weight.x, y->weight.x, 0.01)) << cosine;
   }
 }
 
@@ -267,35 +277,6 @@ TEST(Layers, NoneIsTheBaseBitForBit) {
     EXPECT_EQ(p->direction, q->direction);
     EXPECT_EQ(p->weight, q->weight);
     EXPECT_EQ(a.eval(p->direction, kLobeAll), b.eval(p->direction, kLobeAll));
-  }
-}
-
-TEST(Layers, ExtremeDirectionsStayFinite) {
-  for (const Base& base : kBases) {
-    for (float roughness : {0.0f, 0.05f, 0.5f, 1.0f}) {
-      for (bool front : {true, false}) {
-        Patch s = over(base, 1, roughness, Vec3(1), roughness);
-        s.surface.front = front;
-        s.material.doubleSided = true;
-        bind(s);
-        for (float cosine : {1.0f, 0.3f, 1e-7f, 0.0f}) {
-          const Vec3 v = Patch::direction(cosine, 0);
-          const Bsdf bsdf(s.surface, v);
-          for (const Vec3& wi : {-v, v, Vec3(-v.x, 0, v.z), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, -1)}) {
-            const float f = bsdf.eval(wi, kLobeAll).x, p = bsdf.pdf(wi, kLobeAll);
-            EXPECT_TRUE(std::isfinite(f) && f >= 0 && std::isfinite(p) && p >= 0);
-          }
-          for (float a : {0.0f, 0.5f, 0.99999994f}) {
-            for (float uLobe : {0.0f, 0.5f, 0.99999994f}) {
-              const auto x = bsdf.sample(uLobe, {a, a}, kLobeAll);
-              if (!x) continue;
-              EXPECT_TRUE(std::isfinite(x->weight.x) && x->weight.x >= 0 && std::isfinite(x->pdf))
-                  << base.name;
-            }
-          }
-        }
-      }
-    }
   }
 }
 

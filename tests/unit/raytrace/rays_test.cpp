@@ -1,4 +1,4 @@
-// Numerics 1-3, 5, 6 of the hard cases: the guard, self-intersection, leaks, scales, duplicates.
+// Numerics 1, 2, 5, 6 of the hard cases: the guard, unsound triangles, duplicates.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -6,15 +6,17 @@
 
 #include "raytrace/surface.h"
 #include "raytrace/world.h"
+#include "tests/hard_case.h"
 #include "tests/unit/raytrace/test_scene.h"
 
 namespace saccade::raytrace {
 namespace {
 
+using tests::HardCase;
 using tests::planOf;
 using tests::SceneMaker;
 
-TEST(Guard, RandomBitPatternsNeverAbort) {
+TEST(Guard, Hard1RandomBitPatternsNeverAbort) {
   SceneMaker m;
   m.sphere(m.material(tests::metalMaterial(Vec3(1), 0)), 1, Vec3(0), 1);
   const World world(m.scene, planOf());
@@ -22,16 +24,42 @@ TEST(Guard, RandomBitPatternsNeverAbort) {
   const auto bits = [&] { return std::bit_cast<float>(static_cast<std::uint32_t>(engine())); };
   RayCounters counters;
   Hit hit;
+  int meaningless = 0;
   for (int i = 0; i < 1'000'000; ++i) {
     const Ray ray{{bits(), bits(), bits()}, {bits(), bits(), bits()}, bits(), bits()};
     const bool allowed = traceable(ray);
-    ASSERT_FALSE(world.intersect(ray, hit, counters) && !allowed);
+    meaningless += world.intersect(ray, hit, counters) && !allowed;
     world.transmittance(ray, counters);
     if (i % 16 == 0) world.intersectVisible(0, ray, hit, counters);
     if (i % 16 == 1) world.closestPoint(0, ray.origin, hit);
   }
   EXPECT_GT(counters.refused, 1'000'000u);
   EXPECT_GT(counters.rays, 1000u);
+  HardCase hits =
+      HardCase::counting("a million random bit patterns: none aborts, none refused is a hit", "rays");
+  EXPECT_TRUE(hits.within(meaningless, 0));
+}
+
+TEST(Guard, Hard2ZeroAndSubnormalDirectionsAreMisses) {
+  // From inside a sphere, where every ray that counts is a hit.
+  SceneMaker m;
+  m.sphere(m.material(tests::diffuseMaterial(Vec3(1))), 1, Vec3(0), 1);
+  const World world(m.scene, planOf());
+  std::mt19937 engine(7);
+  RayCounters counters;
+  Hit hit;
+  int hits = 0;
+  for (int i = 0; i < 100000; ++i) {
+    // A subnormal has no exponent bit; one of a million is 0.
+    const auto subnormal = [&] {
+      return std::bit_cast<float>(static_cast<std::uint32_t>(engine()) & 0x807fffffu);
+    };
+    const Vec3 none = i < 8 ? Vec3(i & 1 ? -0.0f : 0.0f, i & 2 ? -0.0f : 0.0f, i & 4 ? -0.0f : 0.0f)
+                            : Vec3(subnormal(), subnormal(), subnormal());
+    hits += world.intersect({Vec3(0.1f), none, 0, core::kInfinity}, hit, counters);
+    hits += world.transmittance({Vec3(0.1f), none, 0, core::kInfinity}, counters) != 1;
+  }
+  EXPECT_TRUE(HardCase::counting("zero and subnormal directions that hit", "rays").within(hits, 0));
 }
 
 TEST(Guard, RefusesWhatHasNoMeaning) {
@@ -49,94 +77,7 @@ TEST(Guard, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(traceable({Vec3(0), Vec3(0, 0, 1), 2, 1}));
 }
 
-/// Rays that leave the convex body outwards must meet nothing; inwards must meet it.
-void expectNoSelfHit(const Vec3& center, float radius) {
-  SceneMaker m;
-  const int material = m.material(tests::diffuseMaterial(Vec3(1)));
-  m.sphere(material, 0, center, radius);
-  m.box(material, 0, center + Vec3(3 * radius), center + Vec3(4 * radius));
-  const World world(m.scene, planOf());
-  std::mt19937 engine(2);
-  std::uniform_real_distribution<float> u(0, 1);
-  RayCounters counters;
-  int selfHits = 0, missed = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const auto triangle = static_cast<std::uint32_t>(engine() % world.triangleCount());
-    const float r = std::sqrt(u(engine)), v = u(engine) * r;
-    const Surface s = surfaceOn(world, world.record(triangle).object, triangle, 1 - r, v, true);
-    Vec3 d = tests::randomDirection(engine);
-    if (glm::dot(d, s.ng) < 0) d = -d;
-    Hit hit;
-    if (world.intersect(s.leave(d), hit, counters) &&
-        world.record(hit.triangle).object == world.record(triangle).object) {
-      ++selfHits;
-    }
-    if (glm::dot(d, s.ng) > 0.01f && !world.intersect(s.leave(-d), hit, counters)) ++missed;
-  }
-  EXPECT_EQ(selfHits, 0) << "center " << center.x << " radius " << radius;
-  EXPECT_EQ(missed, 0) << "center " << center.x << " radius " << radius;
-}
-
-TEST(Offset, NoSelfShadowNearAndFar) {
-  for (float distance : {0.0f, 1.0f, 100.0f, 10000.0f})
-    expectNoSelfHit(Vec3(distance, -distance, distance), 1);
-}
-
-TEST(Offset, NoSelfShadowAtAnyScale) {
-  for (int e : {-20, -10, 10, 20}) expectNoSelfHit(std::ldexp(1.0f, e) * Vec3(1, 2, 3), std::ldexp(1.0f, e));
-}
-
-TEST(Offset, AThinWallDoesNotLeak) {
-  // 5 cm even at 10 km, where a float's step is 1 mm.
-  for (float distance : {0.0f, 100.0f, 10000.0f}) {
-    SceneMaker m;
-    const int material = m.material(tests::diffuseMaterial(Vec3(1)));
-    const Vec3 at(distance);
-    m.box(material, 0, at + Vec3(-1, -1, 0), at + Vec3(1, 1, 0.05f));
-    const World world(m.scene, planOf());
-    std::mt19937 engine(3);
-    std::uniform_real_distribution<float> u(-0.9f, 0.9f);
-    RayCounters counters;
-    for (int i = 0; i < 10000; ++i) {
-      Hit hit;
-      const Ray in{at + Vec3(u(engine), u(engine), 1), {0, 0, -1}, 0, core::kInfinity};
-      ASSERT_TRUE(world.intersect(in, hit, counters));
-      const Surface s = makeSurface(world, hit, in.direction);
-      // From the lit face towards a light behind the wall: blocked by the wall itself.
-      Vec3 d = tests::randomDirection(engine);
-      d.z = -std::fabs(d.z) - 0.01f;
-      ASSERT_EQ(world.transmittance(s.leave(glm::normalize(d)), counters), 0);
-    }
-  }
-}
-
-TEST(Offset, ScalesExactlyWithPowersOfTwo) {
-  const auto trace = [](int exponent) {
-    SceneMaker m;
-    const float scale = std::ldexp(1.0f, exponent);
-    m.sphere(m.material(tests::diffuseMaterial(Vec3(1))), 0, scale * Vec3(0.3f, 0.1f, 0), scale, 16);
-    m.box(0, 0, scale * Vec3(-3), scale * Vec3(3), true);
-    const World world(m.scene, planOf());
-    std::mt19937 engine(4);
-    RayCounters counters;
-    std::vector<float> values;
-    for (int i = 0; i < 5000; ++i) {
-      Hit hit;
-      const Ray ray{scale * Vec3(0, 0, 2.5f), tests::randomDirection(engine), 0, core::kInfinity};
-      if (!world.intersect(ray, hit, counters)) continue;
-      const Surface s = makeSurface(world, hit, ray.direction);
-      values.insert(values.end(), {hit.t / scale, hit.u, hit.v, s.ns.x, static_cast<float>(hit.triangle)});
-      if (world.intersect(s.leave(s.ns), hit, counters)) values.push_back(hit.t / scale);
-    }
-    return values;
-  };
-  const std::vector<float> one = trace(0);
-  ASSERT_GT(one.size(), 20000u);
-  EXPECT_EQ(one, trace(20));
-  EXPECT_EQ(one, trace(-20));
-}
-
-TEST(World, UnsoundTrianglesAreMisses) {
+TEST(World, Hard5UnsoundTrianglesAreMisses) {
   SceneMaker m;
   const int material = m.material(tests::diffuseMaterial(Vec3(1)));
   const float nan = std::nanf("");
@@ -147,34 +88,53 @@ TEST(World, UnsoundTrianglesAreMisses) {
   const World world(m.scene, planOf());
   RayCounters counters;
   Hit hit;
-  ASSERT_TRUE(world.intersect({{0, 0, 1}, {0.01f, 0.02f, -1}, 0, core::kInfinity}, hit, counters));
-  EXPECT_EQ(world.record(hit.triangle).object, 3u);
+  HardCase wrong = HardCase::counting(
+      "needle, zero-area and NaN triangles: rays that do not meet what lies behind", "rays");
+  std::mt19937 engine(8);
+  std::uniform_real_distribution<float> u(-0.9f, 0.9f);
+  int lost = 0;
+  for (int i = 0; i < 10000; ++i) {
+    // Aside of the needle, which is thinner than the step of a float there and may be met or not.
+    const float y = u(engine);
+    const Vec3 target(u(engine), std::fabs(y) > 0.01f ? y : 0.5f, -1);
+    lost += !world.intersect({{0, 0, 1}, target - Vec3(0, 0, 1), 0, core::kInfinity}, hit, counters) ||
+            world.record(hit.triangle).object != 3;
+  }
+  EXPECT_TRUE(wrong.within(lost, 0));
   EXPECT_FALSE(world.intersectVisible(0, {{0.5f, 0, 1}, {0, 0, -1}, 0, core::kInfinity}, hit, counters));
   EXPECT_FALSE(world.closestPoint(1, Vec3(0), hit));
 }
 
-TEST(World, CoplanarDuplicatesGoToTheFirst) {
-  for (bool sphereFirst : {false, true}) {
-    SceneMaker m;
-    const int material = m.material(tests::diffuseMaterial(Vec3(1)));
-    if (sphereFirst) m.sphere(material, 1, {5, 5, 5}, 1, 16);
-    const auto first = static_cast<std::uint32_t>(m.scene.objects.size());
-    m.quad(material, 2, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-    m.quad(material, 3, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
-    const World world(m.scene, planOf());
-    std::mt19937 engine(5);
-    std::uniform_real_distribution<float> u(-0.99f, 0.99f);
-    RayCounters counters;
-    for (int i = 0; i < 1000; ++i) {
-      Hit hit;
-      const Ray ray{{u(engine), u(engine), 1}, {0, 0, -1}, 0, core::kInfinity};
-      ASSERT_TRUE(world.intersect(ray, hit, counters));
-      ASSERT_EQ(world.record(hit.triangle).object, first);
-      // The stencil may still name the second: its own tree has it.
-      ASSERT_TRUE(world.intersectVisible(first + 1, ray, hit, counters));
-      ASSERT_EQ(world.record(hit.triangle).object, first + 1);
-    }
+/// Objects met by rays upon two equal quads, the stencil's own tree included, that are not what they should
+/// be. `before`: what else is built first.
+int wrongDuplicates(int before, int rays) {
+  SceneMaker m;
+  const int material = m.material(tests::diffuseMaterial(Vec3(1)));
+  for (int i = 0; i < before; ++i) m.sphere(material, 1, {5.0f + 3 * i, 5, 5}, 1, 4 + 3 * i);
+  const auto first = static_cast<std::uint32_t>(m.scene.objects.size());
+  m.quad(material, 2, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  m.quad(material, 3, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  for (int i = before; i < 4; ++i) m.sphere(material, 4, {-5.0f - 3 * i, 5, 5}, 1, 8);
+  const World world(m.scene, planOf());
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> u(-0.99f, 0.99f);
+  RayCounters counters;
+  int wrong = 0;
+  for (int i = 0; i < rays; ++i) {
+    Hit hit;
+    const Ray ray{{u(engine), u(engine), 1}, {0, 0, -1}, 0, core::kInfinity};
+    wrong += !world.intersect(ray, hit, counters) || world.record(hit.triangle).object != first;
+    // The stencil may still name the second: its own tree has it.
+    wrong += !world.intersectVisible(first + 1, ray, hit, counters) ||
+             world.record(hit.triangle).object != first + 1;
   }
+  return wrong;
+}
+
+TEST(World, Hard6CoplanarDuplicatesGoToTheFirst) {
+  HardCase wrong =
+      HardCase::counting("coplanar duplicates in five build orders: rays that meet another", "rays");
+  for (int before = 0; before <= 4; ++before) EXPECT_TRUE(wrong.within(wrongDuplicates(before, 2000), 0));
 }
 
 TEST(World, ClosestPointIsTheNearestOnTheSphere) {
