@@ -9,7 +9,7 @@ namespace saccade::core {
 namespace {
 
 // Near plane: a thousandth of the scene, at most 5 cm (a walker's nose), at least a millionth of the far
-// plane so that the depth buffer keeps some precision in scenes of kilometres.
+// plane.
 constexpr float kNearOfDiagonal = 1e-3f;
 constexpr float kNearLargest = 0.05f;
 constexpr float kNearOfFar = 1e-6f;
@@ -59,8 +59,8 @@ View::View(const Camera& camera, int width, int height, const Bounds& scene)
 
   const Vec3 x = right_ / tanHalfX_;
   const Vec3 y = -up_ / tanHalfY_;  // down: row 0 of the image is the top
-  const float a = (zFar_ + zNear_) / (zFar_ - zNear_);
-  const float b = -2 * zFar_ * zNear_ / (zFar_ - zNear_);
+  const float a = -zNear_ / (zFar_ - zNear_);
+  const float b = zFar_ * zNear_ / (zFar_ - zNear_);
   const Vec3 rows[4] = {x, y, a * forward_, forward_};
   const float constants[4] = {0, 0, b, 0};
   for (int row = 0; row < 4; ++row) {
@@ -76,8 +76,8 @@ Vec3 View::direction(Vec2 pixel) const {
 }
 
 float View::viewDepth(float windowDepth) const {
-  const double n = zNear_, f = zFar_, ndc = 2.0 * windowDepth - 1.0;
-  return static_cast<float>(2 * f * n / ((f + n) - ndc * (f - n)));
+  const double n = zNear_, f = zFar_;
+  return static_cast<float>(f * n / (n + windowDepth * (f - n)));
 }
 
 std::optional<View::Projected> View::project(const Vec3& world) const {

@@ -36,13 +36,13 @@ class View {
   int height() const { return height_; }
   float zNear() const { return zNear_; }
   float zFar() const { return zFar_; }
-  /// World to clip space, OpenGL depth convention (-1..1), y down.
+  /// World to clip space, y down, depth 1 (near) to 0 (far): a float is as precise there at any distance.
   const Mat4& viewProjection() const { return viewProjection_; }
 
   /// Direction through image position (pixels, +0.5 = centre), scaled so that its component along the line of
   /// sight is 1: eye + t * direction is the point at view depth t.
   Vec3 direction(Vec2 pixel) const;
-  /// View depth (metres along the line of sight) of a depth-buffer value in [0, 1].
+  /// View depth (metres along the line of sight) of a depth-buffer value: 1 near, 0 far or nothing drawn.
   float viewDepth(float windowDepth) const;
   Vec3 unproject(Vec2 pixel, float windowDepth) const {
     return camera_.eye + viewDepth(windowDepth) * direction(pixel);

@@ -26,7 +26,7 @@ struct FrameSnapshot {
   View view;
   /// Per pixel: linear base radiance RGB and, as a float, the ID (0 = diffuse or background). Row 0 = top.
   std::vector<Vec4> baseAndId;
-  std::vector<float> depth;           ///< depth buffer [0, 1], 1 = nothing drawn
+  std::vector<float> depth;           ///< depth buffer, View::viewDepth; 0 = nothing drawn
   std::vector<ObjectExtent> extents;  ///< by id; [0] unused
   std::uint32_t nonDiffusePixels = 0;
 

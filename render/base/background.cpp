@@ -11,7 +11,7 @@ uniform vec4 corner[3];  // directions: through the image's top left, and from t
 out vec3 direction;
 void main() {  // one triangle over the whole image, at the far plane
   vec2 at = vec2((gl_VertexID & 1) * 2, (gl_VertexID & 2));
-  gl_Position = vec4(at * 2.0 - 1.0, 1.0, 1.0);
+  gl_Position = vec4(at * 2.0 - 1.0, 0.0, 1.0);
   direction = corner[0].xyz + at.x * corner[1].xyz + at.y * corner[2].xyz;
 }
 )";
@@ -105,7 +105,7 @@ void Background::draw(const core::View& view) const {
   const core::Vec4 corners[3] = {core::Vec4(topLeft, 0), core::Vec4(view.direction({width, 0}) - topLeft, 0),
                                  core::Vec4(view.direction({0, height}) - topLeft, 0)};
   gl_.Disable(GL_CULL_FACE);
-  gl_.DepthFunc(GL_LEQUAL);
+  gl_.DepthFunc(GL_GEQUAL);
   gl_.DepthMask(GL_FALSE);
   gl_.UseProgram(program_.name());
   gl_.Uniform4fv(corner_, 3, &corners[0].x);

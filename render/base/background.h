@@ -13,7 +13,7 @@ class Background {
  public:
   Background(const Gl& gl, const core::Environment& environment, int maxSide);
 
-  /// Writes radiance and ID 0 where the depth buffer still holds 1. Expects the base layer's target bound,
+  /// Writes radiance and ID 0 where the depth buffer still holds 0. Expects the base layer's target bound,
   /// with the viewport over all of it; leaves texture unit 0, program and vertex array changed.
   void draw(const core::View& view) const;
 

@@ -154,11 +154,12 @@ void BaseRenderer::State::beginDraw(const core::View& view) {
   gl.Disable(GL_CULL_FACE);
   gl.CullFace(GL_BACK);
   gl.Enable(GL_DEPTH_TEST);
-  gl.DepthFunc(GL_LESS);
+  gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  gl.DepthFunc(GL_GREATER);  // 1 is near
   gl.DepthMask(GL_TRUE);
   gl.FrontFace(GL_CW);  // View's clip space points down
   constexpr float kNothing[4] = {0, 0, 0, 0};
-  constexpr float kFar = 1;
+  constexpr float kFar = 0;
   gl.ClearBufferfv(GL_COLOR, 0, kNothing);
   gl.ClearBufferfv(GL_DEPTH, 0, &kFar);
   gl.ActiveTexture(GL_TEXTURE0 + kMapsUnit);

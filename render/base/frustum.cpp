@@ -14,7 +14,7 @@ constexpr unsigned kAllPlanes = (1u << kPlanes) - 1;
 /// Inside where dot(plane, (p, 1)) >= 0 (Gribb and Hartmann's rows of the matrix).
 Planes frustumPlanes(const core::Mat4& viewProjection) {
   const core::Mat4 rows = glm::transpose(viewProjection);
-  return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] + rows[2]};
+  return {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2]};
 }
 
 enum class Side { outside, crossing, inside };

@@ -89,14 +89,14 @@ class EglContext final : public GlContext {
       failEgl("no configuration for desktop OpenGL");
     }
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 3,
+                                 4,
                                  EGL_CONTEXT_MINOR_VERSION,
-                                 3,
+                                 5,
                                  EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                  EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                  EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes);
-    if (context_ == EGL_NO_CONTEXT) failEgl("no OpenGL 3.3 core context");
+    if (context_ == EGL_NO_CONTEXT) failEgl("no OpenGL 4.5 core context");
   }
   bool bind() noexcept override {
     // The API binding is per thread, and this may be another thread than the one that made the context.

@@ -9,7 +9,7 @@
 
 namespace saccade::render {
 
-// X(type name between PFNGL and PROC, function name without gl). OpenGL 3.3 core.
+// X(type name between PFNGL and PROC, function name without gl). OpenGL 4.5 core.
 #define SACCADE_GL_FUNCTIONS(X)                       \
   X(ACTIVETEXTURE, ActiveTexture)                     \
   X(ATTACHSHADER, AttachShader)                       \
@@ -22,6 +22,7 @@ namespace saccade::render {
   X(BUFFERDATA, BufferData)                           \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)   \
   X(CLEARBUFFERFV, ClearBufferfv)                     \
+  X(CLIPCONTROL, ClipControl)                         \
   X(COMPILESHADER, CompileShader)                     \
   X(CREATEPROGRAM, CreateProgram)                     \
   X(CREATESHADER, CreateShader)                       \

@@ -73,7 +73,7 @@ void GlContext::initialize() {
   SACCADE_GL_FUNCTIONS(SACCADE_GL_NEED)
 #undef SACCADE_GL_NEED
   if (missing)
-    throw core::Error("the " + name_ + " OpenGL context has no " + missing + "; OpenGL 3.3 is needed");
+    throw core::Error("the " + name_ + " OpenGL context has no " + missing + "; OpenGL 4.5 is needed");
 
   GLint major = 0, minor = 0, texture = 0, viewport[2] = {0, 0};
   gl_->GetIntegerv(GL_MAJOR_VERSION, &major);
@@ -83,9 +83,9 @@ void GlContext::initialize() {
   renderer_ = glString(*gl_, GL_RENDERER);
   version_ = glString(*gl_, GL_VERSION);
   const int version = 10 * major + minor;
-  if (version < 33) {
+  if (version < 45) {  // glClipControl
     throw core::Error("the " + name_ + " context offers OpenGL " + version_ + " (" + renderer_ +
-                      "); 3.3 core is needed");
+                      "); 4.5 core is needed");
   }
   // Asked by version, because a function that the context does not have may still have an address.
 #define SACCADE_GL_OFFER(since, type, function) \

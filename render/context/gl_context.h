@@ -1,4 +1,4 @@
-// An OpenGL 3.3 core context, on screen or off, behind one face: off screen is the same program with another
+// An OpenGL 4.5 core context, on screen or off, behind one face: off screen is the same program with another
 // context. One thread owns a context while it is current there.
 #pragma once
 
@@ -41,7 +41,7 @@ class GlContext {
 
  protected:
   explicit GlContext(std::string name) : name_(std::move(name)) {}
-  /// Called once by the constructor of a derived class: makes current, loads the table, checks for 3.3.
+  /// Called once by the constructor of a derived class: makes current, loads the table, checks for 4.5.
   void initialize();
   /// Called first by every derived destructor. A context that is current on another thread stays there.
   void releaseIfCurrent() noexcept;

@@ -19,13 +19,13 @@ class OsmesaContext final : public GlContext {
                               OSMESA_PROFILE,
                               OSMESA_CORE_PROFILE,
                               OSMESA_CONTEXT_MAJOR_VERSION,
-                              3,
+                              4,
                               OSMESA_CONTEXT_MINOR_VERSION,
-                              3,
+                              5,
                               0};
     context_ = OSMesaCreateContextAttribs(attributes, nullptr);
     if (!context_) {
-      throw core::Error("OSMesa makes no OpenGL 3.3 core context (libosmesa6 too old?); try --context egl");
+      throw core::Error("OSMesa makes no OpenGL 4.5 core context (libosmesa6 too old?); try --context egl");
     }
     try {
       initialize();

@@ -44,7 +44,7 @@ class DepthTest {
 
  private:
   float inverse(std::size_t index) const {
-    return (1 - depth_[index]) * inverseNear_ + depth_[index] * inverseFar_;
+    return depth_[index] * inverseNear_ + (1 - depth_[index]) * inverseFar_;
   }
   /// Change of inverse depth across a pixel along one axis: of the two neighbours the one that differs less,
   /// so that the edge of an occluder beside the pixel does not pass for a steep surface.

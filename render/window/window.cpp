@@ -75,15 +75,15 @@ Key keyOf(int code) {
 
 GLFWwindow* openWindow(int width, int height, const std::string& title) {
   glfwDefaultWindowHints();
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   GLFWwindow* window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window) return window;
   throw core::Error(
-      "no window with OpenGL 3.3 core can be opened" + glfwReason() +
+      "no window with OpenGL 4.5 core can be opened" + glfwReason() +
       "; install a graphics driver (libgl1-mesa-dri has a software one) or work off screen with "
       "--headless");
 }

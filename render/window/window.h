@@ -1,4 +1,4 @@
-// A window with an OpenGL 3.3 core context, and its input as plain values: no GLFW or GL type leaves render/.
+// A window with an OpenGL 4.5 core context, and its input as plain values: no GLFW or GL type leaves render/.
 // Main thread only (GLFW's rule), the destructor included. One window at a time.
 #pragma once
 
@@ -62,7 +62,7 @@ using Event =
 class Window {
  public:
   /// Framebuffer of about this size in pixels; current on the calling thread. Throws core::Error saying what
-  /// to do where there is no display or no OpenGL 3.3.
+  /// to do where there is no display or no OpenGL 4.5.
   Window(int width, int height, const std::string& title);
   ~Window();
   Window(const Window&) = delete;

@@ -114,7 +114,7 @@ int expectAgreement(const Case& c) {
       raytrace::Hit hit;
       const bool there =
           world.intersectVisible({view.camera().eye, direction, 0, core::kInfinity}, hit, counters);
-      EXPECT_EQ(there, frame->depth[frame->index(x, y)] < 1) << x << ", " << y;
+      EXPECT_EQ(there, frame->depth[frame->index(x, y)] > 0) << x << ", " << y;
       if (!there) continue;
       const raytrace::BaseLight light = raytrace::baseLight(world, hit, direction);
       const Vec3 traced = light.coverage * (light.reflected + light.emitted);

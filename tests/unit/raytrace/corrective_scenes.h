@@ -17,7 +17,7 @@ using namespace raytrace;
 /// Window depth of a world point.
 inline float windowDepth(const core::View& view, const Vec3& p) {
   const core::Vec4 clip = view.viewProjection() * core::Vec4(p, 1);
-  return 0.5f * clip.z / clip.w + 0.5f;
+  return clip.z / clip.w;
 }
 
 /// What the base layer would have read back, made by rays through the pixel centres; base radiance is left 0.
@@ -27,7 +27,7 @@ inline std::shared_ptr<core::FrameSnapshot> frameOf(const World& world, const co
   frame->epoch = 7;
   frame->view = core::View(camera, width, height, world.scene().bounds);
   frame->baseAndId.assign(static_cast<std::size_t>(width) * height, core::Vec4(0));
-  frame->depth.assign(static_cast<std::size_t>(width) * height, 1);
+  frame->depth.assign(static_cast<std::size_t>(width) * height, 0);
   RayCounters counters;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -41,7 +41,7 @@ TEST_P(Background, EqualsTheTracersLookUpInEveryDirection) {
     float largest = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
-        if (frame->depth[frame->index(x, y)] != 1.0f) continue;
+        if (frame->depth[frame->index(x, y)] != 0.0f) continue;
         ++background;
         EXPECT_EQ(frame->idAt(x, y), 0u);
         const Vec3 truth = core::environmentRadiance(
@@ -67,7 +67,7 @@ TEST_P(Background, LeavesWhatIsDrawnAlone) {
     const auto lit = renderer.render(view, 1, 10);
     EXPECT_EQ(lit->depth, black->depth);
     for (std::size_t i = 0; i < lit->depth.size(); ++i) {
-      if (lit->depth[i] < 1) {
+      if (lit->depth[i] > 0) {
         EXPECT_EQ(lit->baseAndId[i], black->baseAndId[i]);
       } else {
         EXPECT_EQ(black->baseAndId[i], core::Vec4(0));

@@ -38,7 +38,7 @@ TEST_P(BaseGeometry, DepthIsTheDistanceAlongTheLineOfSight) {
   for (int y = 0; y < 21; ++y) {
     for (int x = 0; x < 33; ++x) {
       const float stored = frame->depth[frame->index(x, y)];
-      if (stored == 1) continue;
+      if (stored == 0) continue;
       ++seen;
       const Vec3 direction = frame->view.direction({x + 0.5f, y + 0.5f});
       const float expected = glm::dot(normal, corner) / glm::dot(normal, direction);
@@ -61,15 +61,13 @@ Scene wallsAt(float distance, float gap) {
 }
 
 TEST_P(BaseGeometry, Hard23DepthAtOneKilometre) {
-  // The near plane stands at 5 cm, closer than the case's 0.1. A step of the buffer's floats just below 1 is
-  // z^2 / near * 2^-24 there; projection, viewport, interpolation and storing round by half of one each,
-  // twice.
+  // The near plane stands at 5 cm, closer than the case's 0.1. Depth runs from 1 to 0, so that a float's step
+  // is the same share of it everywhere: matrix, projection, interpolation and storing cost a few.
   constexpr float kDistance = 1000;
-  const Scene scene = wallsAt(kDistance, 20);
+  const Scene scene = wallsAt(kDistance, 0.01f);
   const auto frame = draw(scene, nullptr, 64, 64);
-  const double step = kDistance * kDistance / frame->view.zNear() * 0x1p-24;
   HardCase near("near plane at 1 km", "m"), depth("depth at 1 km, near 0.05", "m"),
-      wrong = HardCase::counting("pixels of the farther of two walls 20 m apart at 1 km", "pixels");
+      wrong = HardCase::counting("pixels of the farther of two walls 1 cm apart at 1 km", "pixels");
   EXPECT_TRUE(near.within(frame->view.zNear(), 0.1));
   int behind = 0;
   for (int y = 0; y < 64; ++y) {
@@ -77,8 +75,9 @@ TEST_P(BaseGeometry, Hard23DepthAtOneKilometre) {
       const std::uint32_t id = frame->idAt(x, y);
       if (id == 3) continue;
       behind += id != (x < 32 ? 1u : 2u);
-      const float truth = id == 1 ? kDistance : kDistance + 20;
-      EXPECT_TRUE(depth.near(frame->view.viewDepth(frame->depth[frame->index(x, y)]), truth, 3 * step));
+      const float truth = id == 1 ? kDistance : kDistance + 0.01f;
+      EXPECT_TRUE(depth.near(frame->view.viewDepth(frame->depth[frame->index(x, y)]), truth,
+                             8 * 0x1p-23 * kDistance));
     }
   }
   EXPECT_TRUE(wrong.within(behind, 0));

@@ -64,7 +64,7 @@ TEST_P(BaseFrames, SizeBeyondTheLimitIsRefusedAndNothingIsLost) {
 TEST_P(BaseFrames, EmptySceneIsBackground) {
   const auto frame = draw(Scene{}, nullptr, 3, 2);
   EXPECT_EQ(frame->baseAndId, std::vector<Vec4>(6, Vec4(0)));
-  EXPECT_EQ(frame->depth, std::vector<float>(6, 1.0f));
+  EXPECT_EQ(frame->depth, std::vector<float>(6, 0.0f));
   EXPECT_EQ(frame->nonDiffusePixels, 0u);
 }
 

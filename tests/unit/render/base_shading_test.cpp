@@ -25,7 +25,7 @@ TEST_P(BaseShading, LitQuadHasTheRadianceOfItsMap) {
   expectRadiance(frame->baseAndId[frame->index(16, 16)], factor * Vec3(0.5f, 2.0f, 0.5f));
   EXPECT_EQ(frame->idAt(16, 16), 7u);
   EXPECT_EQ(frame->baseAndId[frame->index(0, 0)], Vec4(0));
-  EXPECT_EQ(frame->depth[frame->index(0, 0)], 1.0f);
+  EXPECT_EQ(frame->depth[frame->index(0, 0)], 0.0f);
 }
 
 TEST_P(BaseShading, WithoutMapsIrradianceIsPi) {
@@ -110,7 +110,7 @@ TEST_P(BaseShading, BackLayerServesTheBackOfDoubleSidedSurfacesOnly) {
 
 TEST_P(BaseShading, BackFacesOfSingleSidedSurfacesAreNotThereUnlessTheyRefract) {
   core::Material m = lambert(Vec3(1));
-  const auto drawn = [&](const Scene& scene) { return draw(scene)->depth[16 * 32 + 16] < 1; };
+  const auto drawn = [&](const Scene& scene) { return draw(scene)->depth[16 * 32 + 16] > 0; };
   EXPECT_TRUE(drawn(oneQuad(m)));
   EXPECT_FALSE(drawn(oneQuadFromBehind(m)));
   m.transmission = 1;
@@ -129,7 +129,7 @@ TEST_P(BaseShading, AlphaMaskCutsAndBlendScales) {
   scene.textures.push_back(makeTexture(2, 1, {{255, 255, 255, 0}, {255, 255, 255, 255}}, false));
   const auto cut = draw(scene);
   EXPECT_EQ(cut->idAt(12, 16), 0u);
-  EXPECT_EQ(cut->depth[cut->index(12, 16)], 1.0f);
+  EXPECT_EQ(cut->depth[cut->index(12, 16)], 0.0f);
   EXPECT_EQ(cut->idAt(20, 16), 3u);
 
   scene.materials[0].alphaMode = core::AlphaMode::blend;
