@@ -1,5 +1,6 @@
 // The list of experiments: one line each, in the order in which they run.
 #include "bench/growth/growth.h"
+#include "bench/hard/hard.h"
 #include "bench/harness/experiment.h"
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
@@ -74,6 +75,7 @@ const std::vector<Experiment>& allExperiments() {
        "Is the frame without tracing at most half as long again as its bare draw?",
        {Suite::paper},
        &measureUntraced},
+      {"hard", "How far off are the numerical hard cases?", {Suite::hard}, &measureHardCases},
   };
   return experiments;
 }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace saccade::tests {
@@ -27,7 +28,7 @@ class HardCase {
     count   ///< of things that went wrong: the same on every run
   };
 
-  /// `clause`: unique within its number, plain ASCII. `unit`: what `achieved` counts or measures, or empty.
+  /// `clause`: unique within its number, ASCII. `unit`: what `achieved` counts or measures, or empty.
   explicit HardCase(std::string_view clause, std::string_view unit = "", Kind kind = Kind::error)
       : clause_(clause), unit_(unit), kind_(kind) {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -39,21 +40,19 @@ class HardCase {
   static HardCase counting(std::string_view clause, std::string_view unit) {
     return HardCase(clause, unit, Kind::count);
   }
-  ~HardCase() { testing::Test::RecordProperty("hard_case_" + slug(), json()); }
+  ~HardCase() { testing::Test::RecordProperty("hard_case_" + std::to_string(reported_++), json()); }
   HardCase(const HardCase&) = delete;
   HardCase& operator=(const HardCase&) = delete;
 
   /// Whether `achieved` <= `allowed` (false for NaN): an error's size, with its sign where only one side is
   /// wrong.
   [[nodiscard]] testing::AssertionResult within(double achieved, double allowed) {
-    ++checks_;
     const bool good = achieved <= allowed;
-    // The worst is what fails; else the smallest distance to what is allowed, in units of it.
-    const double use = allowed > 0 ? achieved / allowed : achieved - allowed;
-    if (checks_ == 1 || !good || use > worstUse_) {
-      if (!failed_ || !good) achieved_ = achieved, allowed_ = allowed, worstUse_ = use;
-    }
-    failed_ |= !good;
+    // How much of what is allowed is used; beside a failure nothing else is the worst, and NaN is worse than
+    // any.
+    const double share = allowed > 0 ? achieved / allowed : achieved - allowed;
+    const std::pair use(!good, std::isnan(share) ? INFINITY : share);
+    if (checks_++ == 0 || use > worst_) achieved_ = achieved, allowed_ = allowed, worst_ = use;
     if (good) return testing::AssertionSuccess();
     return testing::AssertionFailure()
            << clause_ << ": " << achieved << ' ' << unit_ << ", allowed " << allowed;
@@ -63,36 +62,33 @@ class HardCase {
     return within(std::fabs(value - truth), allowed);
   }
 
-  /// Lower case, words joined by dashes.
-  std::string slug() const {
-    std::string s;
-    for (const char c : clause_) {
-      const bool letter = std::isalnum(static_cast<unsigned char>(c)) != 0;
-      if (letter) s += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      if (!letter && !s.empty() && s.back() != '-') s += '-';
-    }
-    while (!s.empty() && s.back() == '-') s.pop_back();
-    return s;
-  }
-
  private:
   static std::string number(double x) {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof text, x).ptr;
     return std::isfinite(x) ? std::string(text, end) : "null";
   }
+  static std::string escaped(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
+    return out;
+  }
   std::string json() const {
-    return "{\"number\":" + std::to_string(number_) + ",\"clause\":\"" + clause_ +
+    return "{\"number\":" + std::to_string(number_) + ",\"clause\":\"" + escaped(clause_) +
            "\",\"achieved\":" + number(achieved_) + ",\"allowed\":" + number(allowed_) + ",\"unit\":\"" +
            unit_ + "\",\"kind\":\"" + (kind_ == Kind::count ? "count" : "error") +
            "\",\"checks\":" + std::to_string(checks_) + "}";
   }
 
+  static inline int reported_ = 0;  ///< properties of one test have names of their own
   std::string clause_, unit_;
   Kind kind_;
   int number_ = 0, checks_ = 0;
-  bool failed_ = false;
-  double achieved_ = NAN, allowed_ = 0, worstUse_ = 0;
+  std::pair<bool, double> worst_;  ///< failed, share of what is allowed
+  double achieved_ = NAN, allowed_ = 0;
 };
 
 /// How many entries are not equal (NaN never is); all where the sizes differ.

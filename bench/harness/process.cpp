@@ -17,6 +17,7 @@ namespace saccade::bench {
 namespace {
 
 constexpr int kPollMs = 100;
+constexpr int kSignalled = 128;  ///< as shells say it
 
 /// A started process and what it prints. Ends and collects it if nobody has.
 class Process {
@@ -78,18 +79,23 @@ class Process {
 
 }  // namespace
 
-std::string outputOf(const std::string& what, std::vector<std::string> command, const std::stop_token& stop) {
+Outcome runToEnd(const std::string& what, std::vector<std::string> command, const std::stop_token& stop) {
   Process process(what, std::move(command));
   std::optional<std::string> output = process.read(stop);
   if (!output) throw core::Error("stopped on request");
   const int status = process.wait();
-  if (WIFSIGNALED(status)) {
-    throw core::Error(what + " was ended by signal " + std::to_string(WTERMSIG(status)) +
-                      (WTERMSIG(status) == SIGKILL ? " (out of memory?)" : ""));
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : kSignalled + WTERMSIG(status), *std::move(output)};
+}
+
+std::string outputOf(const std::string& what, std::vector<std::string> command, const std::stop_token& stop) {
+  Outcome outcome = runToEnd(what, std::move(command), stop);
+  if (outcome.status > kSignalled) {
+    const int signal = outcome.status - kSignalled;
+    throw core::Error(what + " was ended by signal " + std::to_string(signal) +
+                      (signal == SIGKILL ? " (out of memory?)" : ""));
   }
-  if (WEXITSTATUS(status) != 0)
-    throw core::Error(what + " failed with status " + std::to_string(WEXITSTATUS(status)));
-  return *std::move(output);
+  if (outcome.status != 0) throw core::Error(what + " failed with status " + std::to_string(outcome.status));
+  return std::move(outcome.output);
 }
 
 }  // namespace saccade::bench

@@ -182,6 +182,27 @@ TEST(PathTracer, PassesAddUpToOnePicture) {
   }
 }
 
+TEST(PathTracer, Hard20SamplesBeyondFourThousandMillion) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const core::View view = smallView(m.scene, 20, 15);
+  PathOptions o = options(64, 4);
+  o.variance = true;
+  const PathResult first = tracePaths(world, view, o, {});
+  o.firstSample = std::uint64_t{1} << 32;
+  const PathResult later = tracePaths(world, view, o, {});
+  double difference = 0, variance = 0, same = 0;
+  for (std::size_t i = 0; i < first.radiance.pixels().size(); ++i) {
+    const double d = first.radiance.pixels()[i].x - later.radiance.pixels()[i].x;
+    difference += d;
+    variance += first.variance.pixels()[i].x + later.variance.pixels()[i].x;
+    same += d == 0 && first.radiance.pixels()[i] != Vec3(0);
+  }
+  HardCase off("picture of 64 samples from 2^32 on against the first 64", "standard errors");
+  EXPECT_TRUE(off.within(std::fabs(difference) / std::sqrt(variance), 4));
+  EXPECT_LT(same, 30) << "the samples are others";
+}
+
 TEST(PathTracer, VarianceIsThatOfTheMean) {
   const SceneMaker m = room();
   const World world(m.scene, planOf());
