@@ -97,7 +97,7 @@ TEST(HardReport, AFailedTestMarksItsClausesOrStandsForItself) {
 }
 
 TEST(HardReport, OtherFilesAreRefusedByName) {
-  for (const std::string text :
+  for (const std::string& text :
        {std::string("no"), std::string("{}"), reportOf("Hard1", {{"hard_case_x", "no"}}),
         reportOf("Hard1", {{"hard_case_x", "{}"}})}) {
     try {
