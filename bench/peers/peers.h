@@ -13,7 +13,8 @@ namespace saccade::bench {
 ///
 /// Keys, under "peers/cornell_glossy/": RENDERER@8spp, a point of a curve; RENDERER/to-0.013, the seconds to
 /// that error and how many times sooner than Cycles; "-baked" behind a renderer counts the baking of its maps
-/// too. model: the difference of the references. rest/PART: what is left of corrective's error.
+/// too. ready-RENDERER: what nobody's seconds count. model: the difference of the references. rest/PART: what
+/// is left of corrective's error.
 void measurePeers(Session& session);
 
 }  // namespace saccade::bench
