@@ -53,6 +53,7 @@ BaseLobe::BaseLobe(const Surface& surface, const Vec3& v) : v_(v) {
   f0Estimate_ = f0_;
   if (m.extension && m.extension->film) addFilm(m.extension->film);
   lambdaV_ = delta_ ? 0 : ggx_.lambda(v_);
+  plain_ = !delta_ && !(glass_ > 0) && !film_ && ggx_.isotropic();
 }
 
 void BaseLobe::addFilm(const core::ThinFilm& film) {
@@ -185,27 +186,39 @@ std::optional<LocalSample> BaseLobe::sampleWard(const Vec2& u) const {
   return s;
 }
 
-/// sample() where nothing is transmitted: S alone.
-std::optional<LocalSample> BaseLobe::sampleMirror(const Vec2& u) const {
-  const Vec3 h = delta_ ? Vec3(0, 0, 1) : ggx_.sampleVisible(v_, u);
-  const float vh = std::clamp(glm::dot(v_, h), 0.0f, 1.0f);
-  const Vec3 l = 2 * vh * h - v_;
-  std::optional<LocalSample> s;
-  if (l.z <= 0) return s;
-  s.emplace();
-  s->direction = l;
-  s->delta = delta_;
-  s->weight = facet(vh).reflect;
-  if (delta_) return s;
-  s->weight *= (1 + lambdaV_) / (1 + lambdaV_ + ggx_.lambda(l));
-  s->pdf = ggx_.d(h) / ((1 + lambdaV_) * 4 * v_.z);
-  return s;
+/// sampleVisibleNormal, Schlick, ggxLambda and ggxD, side by side.
+LocalLanes BaseLobe::sampleLanes(const Vec2 (&u)[kLanes]) const {
+  const float alpha = ggx_.x, a2 = alpha * alpha;
+  const Vec3 stretched = glm::normalize(Vec3(alpha * v_.x, alpha * v_.y, v_.z));
+  Lanes height, cosine, sine;
+  for (int k = 0; k < kLanes; ++k) {
+    const float phi = 2 * core::kPi * u[k].y;
+    height[k] = u[k].x;
+    cosine[k] = std::cos(phi);
+    sine[k] = std::sin(phi);
+  }
+  const Lanes z = (1.0f - height) * (1.0f + stretched.z) - stretched.z;
+  const Lanes s = squareRoot(clampLanes(1.0f - z * z, 0, 1));
+  const Vec3Lanes h =
+      normalize(Vec3Lanes{alpha * (s * cosine + stretched.x), alpha * (s * sine + stretched.y),
+                          atLeast(z + stretched.z, kLowestCosine)});
+  const Lanes vh = clampLanes(dot(h, v_), 0, 1), twice = 2.0f * vh;
+  LocalLanes out;
+  out.direction = {twice * h.x - v_.x, twice * h.y - v_.y, twice * h.z - v_.z};
+  const Lanes c2 = atLeast(out.direction.z * out.direction.z, kLeastCosine2);
+  const Lanes lambda = 0.5f * (squareRoot(1.0f + a2 * atLeast(1.0f - c2, 0) / c2) - 1.0f);
+  const Lanes shadowing = (1 + lambdaV_) / (1 + lambdaV_ + lambda);
+  const Lanes m = clampLanes(1.0f - vh, 0, 1), m2 = m * m, m5 = m2 * m2 * m;
+  const auto reflect = [&](float f0) { return (f0 + (f90_ - f0) * m5) * mirror_ * shadowing; };
+  out.weight = {reflect(f0_.x), reflect(f0_.y), reflect(f0_.z)};
+  const Lanes d = a2 * h.z * h.z + h.x * h.x + h.y * h.y;
+  out.pdf = a2 / (core::kPi * d * d) / ((1 + lambdaV_) * 4 * v_.z);
+  return out;
 }
 
 std::optional<LocalSample> BaseLobe::sample(float uLobe, const Vec2& u) const {
   if (!any_) return std::nullopt;
   if (ward_) return sampleWard(u);
-  if (!(glass_ > 0)) return sampleMirror(u);
   const Vec3 h = delta_ ? Vec3(0, 0, 1) : ggx_.sampleVisible(v_, u);
   const float vh = std::clamp(glm::dot(v_, h), 0.0f, 1.0f);
   const Interface f = facet(vh);

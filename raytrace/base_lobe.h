@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/scene/specular_albedo.h"
+#include "raytrace/lanes.h"
 #include "raytrace/microfacet.h"
 #include "raytrace/surface.h"
 #include "raytrace/ward.h"
@@ -19,6 +20,12 @@ struct LocalSample {
   float pdf = 0;  ///< per solid angle; 0 for a delta
   bool delta = false;
   bool transmitted = false;
+};
+
+/// Four of them, none transmitted or delta. Nothing where direction.z <= 0.
+struct LocalLanes {
+  Vec3Lanes direction, weight;
+  Lanes pdf;
 };
 
 class BaseLobe {
@@ -45,6 +52,10 @@ class BaseLobe {
   Vec3 eval(const Vec3& l) const;
   float pdf(const Vec3& l) const;
   std::optional<LocalSample> sample(float uLobe, const Vec2& u) const;
+  /// GGX reflection and nothing else: sampleLanes() may be called.
+  bool plain() const { return plain_; }
+  /// sample() of four points at once.
+  LocalLanes sampleLanes(const Vec2 (&u)[kLanes]) const;
   /// For deltas: both branches with their whole weights.
   LocalSample mirror() const;
   std::optional<LocalSample> refraction() const;
@@ -67,7 +78,6 @@ class BaseLobe {
   bool crossing(const Vec3& l, Crossing& c) const;
   Vec3 refract(const Vec3& h, float cosVH) const;
   std::optional<LocalSample> sampleWard(const Vec2& u) const;
-  std::optional<LocalSample> sampleMirror(const Vec2& u) const;
 
   Vec3 v_{0, 0, 1};
   Ggx ggx_;
@@ -84,7 +94,7 @@ class BaseLobe {
   core::ThinFilm film_;
   Vec3 underFilm_{0};  ///< the dielectric's F0
   std::optional<Ward> ward_;
-  bool entering_ = true, thin_ = false, straight_ = false, delta_ = false, any_ = false;
+  bool entering_ = true, thin_ = false, straight_ = false, delta_ = false, any_ = false, plain_ = false;
 };
 
 }  // namespace saccade::raytrace

@@ -180,6 +180,17 @@ std::optional<BsdfSample> Bsdf::sample(float uLobe, const Vec2& u, unsigned lobe
   return s;
 }
 
+BsdfLanes Bsdf::sampleLanes(const Vec2 (&u)[kLanes]) const {
+  const LocalLanes local = base_.sampleLanes(u);
+  const Vec3Lanes& l = local.direction;
+  const auto world = [&](float t, float b, float n) { return l.x * t + l.y * b + l.z * n; };
+  const Vec3Lanes wi = normalize(Vec3Lanes{world(frame_.t.x, frame_.b.x, frame_.n.x),
+                                           world(frame_.t.y, frame_.b.y, frame_.n.y),
+                                           world(frame_.t.z, frame_.b.z, frame_.n.z)});
+  const Lanes above = dot(wi, ng_);
+  return {wi, local.weight, local.pdf, l.z > Lanes{} ? l.z * above : Lanes{}};
+}
+
 BsdfSample Bsdf::deltaReflection() const {
   const LocalSample local = base_.mirror();
   BsdfSample s = toWorld(local);

@@ -47,6 +47,13 @@ struct BsdfSample {
   bool transmitted = false;
 };
 
+/// Four of them, none transmitted or delta.
+struct BsdfLanes {
+  Vec3Lanes direction, weight;
+  Lanes pdf;
+  Lanes side;  ///< nothing was drawn unless > 0
+};
+
 /// The material at one point seen from one direction. A value; keeps no reference to the surface's memory.
 class Bsdf {
  public:
@@ -76,6 +83,11 @@ class Bsdf {
   float pdf(const Vec3& wi, unsigned lobes) const;
   /// Nothing when the direction carries no light. uLobe chooses lobes, u the direction; all in [0, 1).
   std::optional<BsdfSample> sample(float uLobe, const Vec2& u, unsigned lobes) const;
+
+  /// Only GGX reflection lies over the Lambert lobe: sampleLanes() may be called.
+  bool plain() const { return !layered_ && base_.plain(); }
+  /// sample() of four points at once, kLobeBase alone.
+  BsdfLanes sampleLanes(const Vec2 (&u)[kLanes]) const;
 
   /// For deltas: the base's branches with their whole weights (no probability).
   BsdfSample deltaReflection() const;

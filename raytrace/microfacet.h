@@ -43,9 +43,10 @@ inline float ggxD(const Vec3& h, float alpha) {
   const float d = a2 * h.z * h.z + h.x * h.x + h.y * h.y;
   return a2 / (core::kPi * d * d);
 }
+inline constexpr float kLeastCosine2 = 1e-12f;  ///< squared
 /// Smith's Lambda.
 inline float ggxLambda(float cosV, float alpha) {
-  const float c2 = std::max(cosV * cosV, 1e-12f);
+  const float c2 = std::max(cosV * cosV, kLeastCosine2);
   return 0.5f * (std::sqrt(1 + alpha * alpha * std::max(0.0f, 1 - c2) / c2) - 1);
 }
 /// Visible normal for a view direction in the local frame, v.z > 0, by the spherical caps of Dupuy and

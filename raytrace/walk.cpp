@@ -185,34 +185,58 @@ Vec3 Walk::deltaBranches(const Surface& surface, const Bsdf& bsdf, int depth, fl
   return sampler_.next1D() < chance ? follow(reflection, chance) : follow(*transmission, 1 - chance);
 }
 
-Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight) {
-  const int count = depth == 0 ? options_.glossyRays : 1;
+/// The rays of a rough lobe, stratified along its sample's first dimension.
+void Walk::drawEach(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int count, bool lights,
+                    Legs& legs) {
   const auto rays = static_cast<float>(count);
-  // Inside a solid every light is behind its wall; only rays that leave find it.
-  const bool lights = (bsdf.alpha() >= kNarrowAlpha || world_.lights().hasPunctual()) &&
-                      !world_.lights().empty() && (surface.front || !surface.closed);
-  std::array<std::optional<Leg>, CorrectiveOptions::kMaxGlossyRays> legs;
-  int sent = 0;
   for (int i = 0; i < count; ++i) {
     Vec2 u = sampler_.next2D();
     u.x = (static_cast<float>(i) + u.x) / rays;
     const float uLobe = bsdf.transmits() || bsdf.layered() ? sampler_.next1D() : 0;
     const std::optional<BsdfSample> s = bsdf.sample(uLobe, u, lobes);
     if (!s) continue;
-    legs[sent++].emplace(surface.leave(s->direction), lights && !s->delta ? s->pdf * rays : 0.0f,
-                         s->weight / rays);
+    legs.add(surface.leave(s->direction), lights && !s->delta ? s->pdf * rays : 0.0f, s->weight / rays);
   }
+}
+
+/// The same of a lobe without branches, side by side: the same bits.
+void Walk::drawTogether(const Surface& surface, const Bsdf& bsdf, int count, bool lights, Legs& legs) {
+  const auto rays = static_cast<float>(count);
+  static_assert(CorrectiveOptions::kMaxGlossyRays <= kLanes);
+  Vec2 u[kLanes];
+  sampler_.next2D(u, count);
+  for (int i = 0; i < count; ++i) u[i].x = (static_cast<float>(i) + u[i].x) / rays;
+  const BsdfLanes s = bsdf.sampleLanes(u);
+  for (int i = 0; i < count; ++i) {
+    if (!(s.side[i] > 0)) continue;
+    legs.add(surface.leave(s.direction[i]), lights ? s.pdf[i] * rays : 0.0f, s.weight[i] / rays);
+  }
+}
+
+Vec3 Walk::roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight) {
+  const int count = depth == 0 ? options_.glossyRays : 1;
+  const auto rays = static_cast<float>(count);
+  // Inside a solid every light is behind its wall; only rays that leave find it.
+  const bool lights = (bsdf.alpha() >= kNarrowAlpha || world_.lights().hasPunctual()) &&
+                      !world_.lights().empty() && (surface.front || !surface.closed);
+  Legs legs;
+  if (count > 1 && bsdf.plain()) {
+    drawTogether(surface, bsdf, count, lights, legs);
+  } else {
+    drawEach(surface, bsdf, lobes, count, lights, legs);
+  }
+  const int sent = legs.size();
   for (int i = 0; i < sent; ++i) {
-    send(*legs[i]);
-    if (i > 0) locate(*legs[i - 1], depth + 1);
+    send(legs[i]);
+    if (i > 0) locate(legs[i - 1], depth + 1);
   }
   LightChoice choice;
   if (lights) choice = world_.lights().choose(surface.position);
-  if (sent > 0) locate(*legs[sent - 1], depth + 1);
+  if (sent > 0) locate(legs[sent - 1], depth + 1);
   Vec3 sum(0);
   if (lights) sum = lightSample(surface, bsdf, lobes, choice, rays, weight);
   for (int i = 0; i < sent; ++i) {
-    const Leg& leg = *legs[i];
+    const Leg& leg = legs[i];
     const RoughRay rough{&choice, leg.density};
     const Following following(*this, surface, leg.ray.direction);
     sum += leg.factor *

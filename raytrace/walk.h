@@ -1,7 +1,10 @@
 // One corrective sub-sample's way through the scene.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "core/math/random.h"
 #include "raytrace/bsdf.h"
@@ -66,6 +69,21 @@ class Walk {
     Hit hit;
     std::optional<BaseLookup> base;  ///< where the maps' light is all that is wanted
   };
+  /// The legs of one lobe. Nothing is written that is not used: std::optional clears its storage.
+  class Legs {
+   public:
+    void add(const Ray& ray, float density, const Vec3& factor) {
+      std::construct_at(at(size_++), ray, density, factor);
+    }
+    int size() const { return size_; }
+    Leg& operator[](int i) { return *at(i); }
+
+   private:
+    Leg* at(int i) { return reinterpret_cast<Leg*>(bytes_) + i; }
+    static_assert(std::is_trivially_destructible_v<Leg>);
+    alignas(Leg) std::byte bytes_[CorrectiveOptions::kMaxGlossyRays * sizeof(Leg)];
+    int size_ = 0;
+  };
   void send(Leg& leg) {
     leg.met = world_.intersect(leg.ray, leg.hit, counters_);
     if (leg.met) world_.prefetch(leg.hit);
@@ -86,6 +104,8 @@ class Walk {
   Vec3 dispersed(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 layeredBranches(const Surface& surface, const Bsdf& bsdf, int depth, float weight);
   Vec3 branch(const Surface& surface, const BsdfSample& sample, float chance, int depth, float weight);
+  void drawEach(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int count, bool lights, Legs& legs);
+  void drawTogether(const Surface& surface, const Bsdf& bsdf, int count, bool lights, Legs& legs);
   Vec3 roughRays(const Surface& surface, const Bsdf& bsdf, unsigned lobes, int depth, float weight);
   Vec3 lightSample(const Surface& surface, const Bsdf& bsdf, unsigned lobes, const LightChoice& choice,
                    float rays, float weight);

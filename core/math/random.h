@@ -29,8 +29,13 @@ inline std::uint64_t mix64(std::uint64_t v) {
   return v ^ (v >> 31);
 }
 
-inline std::uint32_t reverseBits(std::uint32_t v) {
-  v = __builtin_bswap32(v);
+/// Four 32-bit words side by side. Below, Word is this or std::uint32_t.
+using WordLanes = std::uint32_t __attribute__((vector_size(16)));
+
+template <class Word>
+Word reverseBits(Word v) {
+  v = (v >> 16) | (v << 16);
+  v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
   v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
   v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
   return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
@@ -38,7 +43,8 @@ inline std::uint32_t reverseBits(std::uint32_t v) {
 
 /// Owen scrambling of a number whose most significant digit is bit 0: a bit is flipped by a hash of the bits
 /// below it.
-inline std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t key) {
+template <class Word>
+Word scrambleReversed(Word v, Word key) {
   v ^= v * 0x3d20adeau;
   v += key;
   v *= (key >> 16) | 1u;
@@ -49,7 +55,8 @@ inline std::uint32_t scrambleReversed(std::uint32_t v, std::uint32_t key) {
 
 /// The second Sobol dimension of an index, most significant digit at bit 0: digit i is the sum modulo 2 of
 /// the index bits j with binomial(j, i) odd, that is (Lucas) with i a bitwise subset of j.
-inline std::uint32_t sobolSecondReversed(std::uint32_t index) {
+template <class Word>
+Word sobolSecondReversed(Word index) {
   index ^= (index >> 1) & 0x55555555u;
   index ^= (index >> 2) & 0x33333333u;
   index ^= (index >> 4) & 0x0f0f0f0fu;
@@ -79,15 +86,36 @@ class PixelSampler {
   Vec2 next2D() {  ///< [0, 1)^2
     const std::uint64_t keys = nextKeys();
     const std::uint32_t index = shuffledIndex(keys);
-    const auto key = static_cast<std::uint32_t>((keys * 0xd1342543de82ef95ull) >> 32);
-    const std::uint32_t second = detail::scrambleReversed(detail::sobolSecondReversed(index), key);
+    const std::uint32_t second =
+        detail::scrambleReversed(detail::sobolSecondReversed(index), secondKey(keys));
     return {first(index, keys), detail::toUnitFloat(detail::reverseBits(second))};
+  }
+  /// What four calls of next2D() return, side by side; but only `count` of them count as taken.
+  void next2D(Vec2 (&out)[4], int count) {
+    detail::WordLanes shuffle, low, high;
+    for (int k = 0; k < 4; ++k) {
+      const std::uint64_t keys = keysOf(dimension_ + 1 + static_cast<std::uint32_t>(k));
+      shuffle[k] = static_cast<std::uint32_t>(keys);
+      low[k] = static_cast<std::uint32_t>(keys >> 32);
+      high[k] = secondKey(keys);
+    }
+    dimension_ += static_cast<std::uint32_t>(count);
+    const detail::WordLanes index =
+        detail::reverseBits(detail::scrambleReversed(detail::WordLanes{} + reversedIndex_, shuffle));
+    const detail::WordLanes first = detail::reverseBits(detail::scrambleReversed(index, low));
+    const detail::WordLanes second =
+        detail::reverseBits(detail::scrambleReversed(detail::sobolSecondReversed(index), high));
+    for (int k = 0; k < 4; ++k) out[k] = {detail::toUnitFloat(first[k]), detail::toUnitFloat(second[k])};
   }
 
  private:
-  std::uint64_t nextKeys() {
-    return detail::mix64(pixelKey_ + 0x9e3779b97f4a7c15ull * std::uint64_t{++dimension_});
+  std::uint64_t keysOf(std::uint32_t dimension) const {
+    return detail::mix64(pixelKey_ + 0x9e3779b97f4a7c15ull * std::uint64_t{dimension});
   }
+  static std::uint32_t secondKey(std::uint64_t keys) {
+    return static_cast<std::uint32_t>((keys * 0xd1342543de82ef95ull) >> 32);
+  }
+  std::uint64_t nextKeys() { return keysOf(++dimension_); }
   /// Shuffling by Owen scrambling keeps aligned blocks of 2^k indices together, hence the stratification.
   std::uint32_t shuffledIndex(std::uint64_t keys) const {
     return detail::reverseBits(detail::scrambleReversed(reversedIndex_, static_cast<std::uint32_t>(keys)));

@@ -65,6 +65,18 @@ TEST(PixelSampler, ShortcutsEqualTheirDefinitions) {
   }
 }
 
+TEST(PixelSampler, FourPairsAtOnceAreFourCalls) {
+  for (std::uint64_t subSample : {0ull, 1ull, 5ull, 0xdeadbeefull, 0x100000003ull}) {
+    for (int count = 1; count <= 4; ++count) {
+      PixelSampler one(12, 34, subSample, 5), four = one;
+      Vec2 pairs[4];
+      four.next2D(pairs, count);
+      for (int k = 0; k < count; ++k) EXPECT_EQ(pairs[k], one.next2D()) << subSample << " " << k;
+      EXPECT_EQ(four.next1D(), one.next1D());  // only `count` are taken
+    }
+  }
+}
+
 TEST(PixelSampler, EveryElementaryIntervalOfEveryPairHoldsOnePoint) {
   for (int bits = 0; bits <= 10; ++bits) {
     const std::uint32_t count = 1u << bits;

@@ -74,6 +74,52 @@ TEST(Bsdf, Hard10FurnaceNeverExceedsOne) {
   }
 }
 
+TEST(Bsdf, FourSamplesAtOnceHaveTheBitsOfEachAlone) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<float> uniform(0, 0x1.fffffep-1f);
+  int drawn = 0, refused = 0;
+  for (float metallic : {0.0f, 0.5f, 1.0f}) {
+    for (float roughness : {0.05f, 0.1f, 0.3f, 0.7f, 1.0f}) {
+      for (float cosine : kCosines) {
+        Patch s = patch(metallic, roughness, 0, false);
+        s.surface.point.baseColor = Vec3(0.9f, 0.4f, 0.1f);
+        s.surface.ng = glm::normalize(Vec3(0.3f, -0.2f, 1));  // some directions pass below the surface
+        bind(s);
+        const Bsdf bsdf = s.at(cosine, roughness);
+        ASSERT_TRUE(bsdf.plain());
+        for (int i = 0; i < 100; ++i) {
+          Vec2 u[kLanes];
+          for (Vec2& pair : u) pair = {uniform(engine), uniform(engine)};
+          const BsdfLanes four = bsdf.sampleLanes(u);
+          for (int k = 0; k < kLanes; ++k) {
+            const std::optional<BsdfSample> one = bsdf.sample(0, u[k], kLobeBase);
+            ASSERT_EQ(four.side[k] > 0, one.has_value());
+            ++(one ? drawn : refused);
+            if (!one) continue;
+            EXPECT_EQ(four.direction[k], one->direction);
+            EXPECT_EQ(four.weight[k], one->weight);
+            EXPECT_EQ(four.pdf[k], one->pdf);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(drawn, 10000);
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(Bsdf, OnlyPlainReflectionIsSampledFourAtOnce) {
+  Patch glass = patch(0, 0.3f, 0.5f, true), mirror = patch(1, 0, 0, false), filmed = patch(1, 0.3f, 0, false),
+        coated = filmed, brushed = filmed;
+  filmed.extension().film = {1, 1.3f, 400};
+  coated.extension().clearcoat = 1;
+  brushed.extension().anisotropy = 0.5f;
+  for (Patch* s : {&glass, &mirror, &filmed, &coated, &brushed}) {
+    bind(*s);
+    EXPECT_FALSE(s->at(0.5f).plain());
+  }
+}
+
 TEST(Bsdf, Hard10SmoothGlassLosesNothing) {
   HardCase lost("white furnace, smooth glass: reflected and transmitted sum to 1");
   for (bool closed : {true, false}) {
