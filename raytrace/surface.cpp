@@ -59,9 +59,9 @@ float coverageOf(const CompiledMaterial& m, float alpha) {
   return m.alphaMode == core::AlphaMode::blend ? std::clamp(alpha, 0.0f, 1.0f) : 1.0f;
 }
 
-MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const CompiledMaterial& m,
-                               const Vec2& uv0) {
-  MaterialPoint p;
+/// Fills a fresh point; its extension apart.
+void evaluateMaterial(const World& world, const Hit& hit, const CompiledMaterial& m, const Vec2& uv0,
+                      MaterialPoint& p) {
   p.baseColor = m.baseColor;
   p.coverage = m.alpha;
   p.emission = m.unlit ? Vec3(0) : m.emission;
@@ -79,7 +79,6 @@ MaterialPoint evaluateMaterial(const World& world, const Hit& hit, const Compile
     p.coverage *= c.w;
   }
   p.coverage = coverageOf(m, p.coverage);
-  return p;
 }
 
 /// Tangent (xyz, world) and handedness; 0 where the mesh has none.
@@ -173,7 +172,7 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
     s.lightmapUv = place->lightmapUv(s.lightmapUv);
     ns = place->normalToWorld * ns;
   }
-  s.point = evaluateMaterial(world, hit, *s.material, s.uv0);
+  evaluateMaterial(world, hit, *s.material, s.uv0, s.point);
 
   s.ng = unitOr(hit.ng, -direction);
   s.ns = unitOr(ns, s.ng);
