@@ -52,8 +52,8 @@ std::vector<float> objectSaliency(const FrameSnapshot& frame, const core::ImageG
                       " x " + std::to_string(frame.view.height()) + ")");
   }
   std::vector<double> sums(frame.extents.size(), 0.0);
-  for (std::size_t i = 0; i < frame.baseAndId.size(); ++i) {
-    const auto id = static_cast<std::uint32_t>(frame.baseAndId[i].w);
+  for (std::size_t i = 0; i < frame.ids.size(); ++i) {
+    const auto id = static_cast<std::uint32_t>(frame.ids[i]);
     if (id == 0) continue;
     if (id >= sums.size()) {
       throw core::Error("attention: the ID mask names object " + std::to_string(id) +

@@ -25,8 +25,8 @@ std::size_t picturesWithin(std::size_t bytes, const core::FrameSnapshot& frame) 
 /// Calls visit(i) for each non-diffuse pixel in scanline order.
 template <class Visit>
 void forEachNonDiffuse(const core::FrameSnapshot& frame, Visit&& visit) {
-  for (std::size_t i = 0; i < frame.baseAndId.size(); ++i) {
-    if (frame.baseAndId[i].w != 0) visit(i);
+  for (std::size_t i = 0; i < frame.ids.size(); ++i) {
+    if (frame.ids[i] != 0) visit(i);
   }
 }
 

@@ -11,7 +11,6 @@
 namespace saccade::bench {
 namespace {
 
-constexpr int kQuickRepeats = 2;
 /// Whose picture is kept beside the last one of each method.
 constexpr double kPictureBudgetMs = 125;
 
@@ -94,11 +93,10 @@ void addPictures(Session& session, Record& record, const Series& s) {
   record.files["error"] = session.errorMap(name + "_flip", s.grades.back().errors.flipMap);
 }
 
-void addRecords(Session& session, const StillView& view, const MethodRun& run, int repeats,
-                const LoadWatch& watch) {
+void addRecords(Session& session, const StillView& view, const MethodRun& run, const LoadWatch& watch) {
   std::vector<const Series*> whole;
   for (const Series& s : run.series) {
-    if (static_cast<int>(s.seconds.size()) == repeats) whole.push_back(&s);
+    if (static_cast<int>(s.seconds.size()) == kRepeats) whole.push_back(&s);
   }
   for (const Series* s : whole) {
     Record record = recordOf(view, run, *s);
@@ -116,18 +114,17 @@ std::vector<MethodRun> chosenMethods(const BenchOptions& options) {
 }
 
 void measure(Session& session, const StillView& view) {
-  const int repeats = session.quick() ? kQuickRepeats : kRepeats;
   const auto stage = openStage(view.file, view.quality, session.options().seed, session.stop());
   const Grader grader(referenceOf(*stage->workspace, view, session.stop()).radiance);
   std::vector<MethodRun> runs = chosenMethods(session.options());
   session.say("still: " + view.name() + " " + view.sizeName() + ", " + std::to_string(runs.size()) +
-              " methods and variants, " + std::to_string(repeats) + " repeats");
+              " methods and variants, " + std::to_string(kRepeats) + " repeats");
   const StillTask task{app::chooseCamera(stage->workspace->scene, {}), view.size, view.longestSeconds,
                        session.stop()};
   StillTask shortest = task;  // long points warm nothing up that short ones do not
   shortest.longestSeconds = 0;
   const LoadWatch watch;
-  alternate(static_cast<int>(runs.size()), repeats, session.stop(), [&](int i, int round) {
+  alternate(static_cast<int>(runs.size()), kRepeats, session.stop(), [&](int i, int round) {
     MethodRun& run = runs[i];
     const bool warmUp = round < 0;
     const PeakMemory peak;
@@ -136,7 +133,7 @@ void measure(Session& session, const StillView& view) {
     });
     run.peakBytes = std::max(run.peakBytes, peak.bytes());
   });
-  for (const MethodRun& run : runs) addRecords(session, view, run, repeats, watch);
+  for (const MethodRun& run : runs) addRecords(session, view, run, watch);
 }
 
 Record recordOf(const StillView& view, const Reference& reference) {

@@ -30,28 +30,28 @@ struct Measured {
 };
 
 /// Where the run of equal IDs that begins at `start` ends. NaN equals nothing, itself included.
-int endOfRun(const std::vector<float>& ids, int start) {
-  const int width = static_cast<int>(ids.size());
-  const __m256 id = _mm256_set1_ps(ids[static_cast<std::size_t>(start)]);
+int endOfRun(const float* ids, int width, int start) {
+  const __m256 id = _mm256_set1_ps(ids[start]);
   int x = start + 1;
   for (; x + 8 <= width; x += 8) {
-    const __m256 differs = _mm256_cmp_ps(_mm256_loadu_ps(&ids[static_cast<std::size_t>(x)]), id, _CMP_NEQ_UQ);
+    const __m256 differs = _mm256_cmp_ps(_mm256_loadu_ps(ids + x), id, _CMP_NEQ_UQ);
     const auto lanes = static_cast<unsigned>(_mm256_movemask_ps(differs));
     if (lanes != 0) return x + std::countr_zero(lanes);
   }
-  while (x < width && ids[static_cast<std::size_t>(x)] == ids[static_cast<std::size_t>(start)]) ++x;
+  while (x < width && ids[x] == ids[start]) ++x;
   return x;
 }
 
-void measureBoxes(const FrameSnapshot& frame, Measured measured) {
+void measureBoxes(FrameSnapshot& frame, Measured measured) {
   const int width = frame.view.width(), height = frame.view.height();
-  std::vector<float> ids(static_cast<std::size_t>(width));  // of a row, side by side
+  frame.ids.resize(frame.baseAndId.size());
   const Vec4* row = frame.baseAndId.data();
-  for (int y = 0; y < height; ++y, row += width) {
-    for (std::size_t x = 0; x < ids.size(); ++x) ids[x] = row[x].w;
+  float* ids = frame.ids.data();
+  for (int y = 0; y < height; ++y, row += width, ids += width) {
+    for (int x = 0; x < width; ++x) ids[x] = row[x].w;
     for (int x = 0; x < width;) {
-      const int end = endOfRun(ids, x);
-      const float id = ids[static_cast<std::size_t>(x)];
+      const int end = endOfRun(ids, width, x);
+      const float id = ids[x];
       if (id != 0) measured.add(id, x, end, y);
       x = end;
     }

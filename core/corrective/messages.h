@@ -26,12 +26,15 @@ struct FrameSnapshot {
   View view;
   /// Per pixel: linear base radiance RGB and, as a float, the ID (0 = diffuse or background). Row 0 = top.
   std::vector<Vec4> baseAndId;
+  /// The IDs of baseAndId side by side: who asks for the mask alone touches a quarter of the memory.
+  /// measureExtents fills it.
+  std::vector<float> ids;
   std::vector<float> depth;           ///< depth buffer, View::viewDepth; 0 = nothing drawn
   std::vector<ObjectExtent> extents;  ///< by id; [0] unused
   std::uint32_t nonDiffusePixels = 0;
 
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * view.width() + x; }
-  std::uint32_t idAt(int x, int y) const { return static_cast<std::uint32_t>(baseAndId[index(x, y)].w); }
+  std::uint32_t idAt(int x, int y) const { return static_cast<std::uint32_t>(ids[index(x, y)]); }
 };
 using FramePtr = std::shared_ptr<const FrameSnapshot>;
 
@@ -42,8 +45,9 @@ struct AnalysisInput {
   std::shared_ptr<const ImageRgba8> display;
 };
 
-/// Fills extents (idCount + 1 entries) and nonDiffusePixels from the mask. One pass for boxes and counts,
-/// lattice points counted per level for the start level with N_min (Haber 2001, section 4.5; design fact 3).
+/// Fills ids, extents (idCount + 1 entries) and nonDiffusePixels from baseAndId. One pass for boxes and
+/// counts, lattice points counted per level for the start level with N_min (Haber 2001, section 4.5; design
+/// fact 3).
 void measureExtents(FrameSnapshot& frame, std::uint32_t idCount, int nMin);
 
 /// One corrective sample (Haber 2001, sections 4.3 and 4.5).
@@ -90,7 +94,7 @@ void forEachPixel(const Job& job, Visit&& visit) {
     if (frame.idAt(p.x, p.y) == job.id) visit(p.x, p.y);
   };
   walkLattice(frame.extents[job.id].box, job.begin, job.points, job.omitCoarser, [&](int x, int y) {
-    __builtin_prefetch(&frame.baseAndId[frame.index(x, y)]);
+    __builtin_prefetch(&frame.ids[frame.index(x, y)]);
     Pixel& slot = pending[walked % kBehind];
     if (walked++ >= kBehind) look(slot);
     slot = {x, y};

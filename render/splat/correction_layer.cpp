@@ -111,12 +111,12 @@ void CorrectionLayer::loadMask(std::size_t index, int tileX, int tileY) {
   const int columns = std::min(kTile, width_ - x0), rows = std::min(kTile, height_ - y0);
   if (columns < kTile || rows < kTile) std::fill(std::begin(tile.id), std::end(tile.id), 0u);
   for (int r = 0; r < rows; ++r) {
-    const core::Vec4* row = &frame_->baseAndId[frame_->index(x0, y0 + r)];
+    const float* row = &frame_->ids[frame_->index(x0, y0 + r)];
     std::uint32_t* id = tile.id + r * kTile;
     if (columns == kTile) {
-      for (int c = 0; c < kTile; ++c) id[c] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[c].w));
+      for (int c = 0; c < kTile; ++c) id[c] = static_cast<std::uint32_t>(static_cast<std::int32_t>(row[c]));
     } else {
-      for (int c = 0; c < columns; ++c) id[c] = static_cast<std::uint32_t>(row[c].w);
+      for (int c = 0; c < columns; ++c) id[c] = static_cast<std::uint32_t>(row[c]);
     }
   }
   std::int32_t floor = kClosed;

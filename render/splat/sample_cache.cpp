@@ -314,7 +314,7 @@ void SampleCache::findVisible(Generation& g, const core::FrameSnapshot& frame, W
       const Landing& at = landings[static_cast<std::size_t>(k)];
       const std::uint8_t level = page->level[at.slot];
       const auto index = static_cast<std::size_t>(at.pixelIndex);
-      if (static_cast<std::uint32_t>(frame.baseAndId[index].w) != page->id[at.slot] ||
+      if (static_cast<std::uint32_t>(frame.ids[index]) != page->id[at.slot] ||
           !depthTest.agrees(at.pixel, index, at.viewDepth)) {
         ++result.hidden;
       } else if (claimed_[index] != 0 && claimed_[index] <= level) {
@@ -357,7 +357,7 @@ int SampleCache::projectPage(const Page& page, const core::FrameSnapshot& frame,
     if (!(depth[i] >= zNear && depth[i] <= kLargest)) continue;
     if (!(x[i] >= 0 && y[i] >= 0 && x[i] < width && y[i] < height)) continue;
     const std::size_t index = frame.index(static_cast<int>(x[i]), static_cast<int>(y[i]));
-    __builtin_prefetch(&frame.baseAndId[index].w);
+    __builtin_prefetch(&frame.ids[index]);
     __builtin_prefetch(&frame.depth[index]);
     Landing& at = landings[static_cast<std::size_t>(inside++)];
     at.pixel = {x[i], y[i]};

@@ -28,7 +28,7 @@ std::shared_ptr<core::FrameSnapshot> fourObjects() {
 ImageGray salientOnlyAt(std::uint32_t id, const core::FrameSnapshot& frame) {
   ImageGray map(frame.view.width(), frame.view.height(), 0.0f);
   for (std::size_t i = 0; i < map.pixels().size(); ++i)
-    map.pixels()[i] = frame.baseAndId[i].w == id ? 0.8f : 0.1f;
+    map.pixels()[i] = frame.ids[i] == static_cast<float>(id) ? 0.8f : 0.1f;
   return map;
 }
 
@@ -56,7 +56,7 @@ TEST(ObjectSaliency, IsTheMeanOverTheMask) {
 TEST(ObjectSaliency, RefusesAMapOfAnotherSizeAndUnknownObjects) {
   const auto frame = fourObjects();
   EXPECT_THROW(objectSaliency(*frame, ImageGray(kWidth, kHeight + 1)), core::Error);
-  frame->baseAndId[0].w = 6;
+  frame->ids[0] = 6;
   EXPECT_THROW(objectSaliency(*frame, ImageGray(kWidth, kHeight)), core::Error);
 }
 

@@ -114,6 +114,7 @@ core::FrameSnapshot halves() {
     for (int x = 0; x < 8; ++x) frame.baseAndId.emplace_back(core::Vec3(y < 4 ? 1.0f : 1.1f), x < 4 ? 1 : 0);
   }
   frame.baseAndId[frame.index(7, 7)] = core::Vec4(5, 5, 5, 0);
+  core::measureExtents(frame, 1, 1);
   return frame;
 }
 

@@ -135,7 +135,7 @@ TEST(CorrectiveTracer, WhereTheRayMissesThePointOfTheDepthBufferIsShaded) {
   int x = 32;
   while (frame->idAt(x, 32) != 2) ++x;
   const std::size_t edge = frame->index(x, 32), beyond = frame->index(x - 1, 32);
-  frame->baseAndId[beyond].w = 2;
+  frame->ids[beyond] = 2;
   frame->depth[beyond] = frame->depth[edge];
   RayCounters counters;
   const core::Sample s = tracer.trace(*frame, x - 1, 32, 7, counters);
@@ -158,7 +158,7 @@ TEST(CorrectiveTracer, AnUnknownIdIsAnErrorAndInfiniteLightIsZeroAndCounted) {
   RayCounters counters;
   EXPECT_EQ(tracer.trace(*frame, 16, 16, 7, counters).correction, Vec3(0));
   EXPECT_EQ(counters.nonFinite, 1u);
-  frame->baseAndId[frame->index(16, 16)].w = 9;
+  frame->ids[frame->index(16, 16)] = 9;
   EXPECT_THROW(tracer.trace(*frame, 16, 16, 7, counters), core::Error);
 }
 

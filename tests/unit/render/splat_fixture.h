@@ -34,6 +34,7 @@ inline std::shared_ptr<core::FrameSnapshot> makeFrame(
     for (int x = 0; x < view.width(); ++x) {
       const Surface s = at(view, x, y);
       frame->baseAndId.emplace_back(0.5f, 0.25f, 0.125f, static_cast<float>(s.id));
+      frame->ids.push_back(static_cast<float>(s.id));
       frame->depth.push_back(static_cast<float>((1 / s.viewDepth - 1 / f) / (1 / n - 1 / f)));
       if (s.id != 0) ++frame->nonDiffusePixels;
     }
