@@ -2,33 +2,18 @@
 // nothing depends.
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "bench/harness/experiment.h"
 #include "bench/harness/method.h"
+#include "tests/temporary_folder.h"
 
 namespace saccade::bench {
 
-/// Of this process, removed at its end.
-inline const std::filesystem::path& stageFolder() {
-  struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("saccade-walkers-" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
+inline std::string mapsOf(const std::string& scene) {
+  return (tests::temporaryFolder() / (scene + ".maps")).string();
 }
-
-inline std::string mapsOf(const std::string& scene) { return (stageFolder() / (scene + ".maps")).string(); }
 
 inline std::unique_ptr<Stage> inlineStage(const std::string& name) {
   auto stage = std::make_unique<Stage>();

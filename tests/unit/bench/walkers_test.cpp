@@ -28,7 +28,7 @@ bool samePixels(const core::ImageRgb& a, const core::ImageRgb& b) {
 
 /// What `saccade render` writes with these arguments.
 core::ImageRgb rendered(const std::string& arguments) {
-  const std::string file = (stageFolder() / "rendered.exr").string();
+  const std::string file = (tests::temporaryFolder() / "rendered.exr").string();
   const std::string command = std::string(SACCADE_BINARY) + " render " + bundledScene("cornell") +
                               " --maps " + mapsOf("cornell") + " --size 128x96 -o " + file + " " + arguments +
                               " 2>/dev/null >/dev/null";
