@@ -92,13 +92,13 @@ std::optional<View::Projected> View::project(const Vec3& world) const {
   return Projected{pixel, depth};
 }
 
-void View::project(const float* x, const float* y, const float* z, std::size_t count, float* pixelX,
-                   float* pixelY, float* viewDepth) const {
-  // Copies, so that the compiler need not fear that the results overwrite them.
+void View::project(const float* x, const float* y, const float* z, std::size_t count,
+                   float* __restrict__ pixelX, float* __restrict__ pixelY,
+                   float* __restrict__ viewDepth) const {
+  // Copies and __restrict__, so that the compiler need not fear that the results overwrite what is read.
   const Vec3 eye = camera_.eye, right = right_, up = up_, forward = forward_;
   const float tanX = tanHalfX_, tanY = tanHalfY_;
   const auto width = static_cast<float>(width_), height = static_cast<float>(height_);
-#pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - eye.x, dy = y[i] - eye.y, dz = z[i] - eye.z;
     const float depth = forward.x * dx + forward.y * dy + forward.z * dz;
