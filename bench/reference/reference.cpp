@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <thread>
 
 #include "app/cli/console.h"
+#include "bench/harness/trials.h"
 #include "bench/reference/sums.h"
 #include "core/atomic_file.h"
 #include "core/cache_folder.h"
@@ -21,17 +21,11 @@
 namespace saccade::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// A power of two: passes are then whole blocks of the pixel's (0, 2)-sequence.
 constexpr int kSamplesPerPass = 8;
 /// Below it the estimate may not have seen a single rare bright path.
 constexpr std::uint64_t kLeastSamplesPerPixel = 64;
 constexpr double kSecondsBetweenCheckpoints = 10;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Of all threads of this process.
 double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
