@@ -17,10 +17,22 @@ namespace {
 constexpr int kRouletteBounces = 3;  ///< scattered so often before roulette begins
 constexpr float kLargestSurvival = 0.95f;
 constexpr int kMaxLayers = 256;  ///< blended layers that one path passes
+/// Keeps the random numbers of points apart from those of pixels.
+constexpr std::uint32_t kIrradianceStream = 0xffff'6900u;
+/// Samples of a point lie evenly, so their spread says too much: the variance is that of so many independent
+/// groups.
+constexpr std::uint32_t kReplicates = 16;
 
 float powerHeuristic(float a, float b) {
   const float a2 = a * a, b2 = b * b;
   return a2 > 0 ? a2 / (a2 + b2) : 0;
+}
+
+/// Unit, with a density of cosine / pi around the frame's normal.
+Vec3 cosineDirection(const Frame& frame, const Vec2& u) {
+  const float r = std::sqrt(u.x), phi = 2 * core::kPi * u.y;
+  return glm::normalize(
+      frame.toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - u.x))}));
 }
 
 /// The material as the transport sees it: with Transport::diffuse only the base layer's Lambert lobe.
@@ -48,10 +60,8 @@ class Scatterer {
   }
   std::optional<BsdfSample> sample(float uLobe, const Vec2& u) const {
     if (!diffuseOnly_) return full_.sample(uLobe, u, kLobeAll);
-    const float r = std::sqrt(u.x), phi = 2 * core::kPi * u.y;
     BsdfSample s;
-    s.direction = glm::normalize(
-        frame_.toWorld({r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - u.x))}));
+    s.direction = cosineDirection(frame_, u);
     if (!above(s.direction)) return std::nullopt;
     s.pdf = pdf(s.direction);
     s.weight = albedo_;
@@ -67,15 +77,51 @@ class Scatterer {
   bool diffuseOnly_;
 };
 
+/// A surface that takes light, as a white Lambert one under the interpolated normal.
+class Receiver {
+ public:
+  Receiver(const Vec3& ng, const Vec3& normal) : ng_(ng), frame_(normal) {}
+  static bool takesLight() { return true; }
+  Vec3 eval(const Vec3& wi) const { return Vec3(pdf(wi)); }
+  float pdf(const Vec3& wi) const { return above(wi) ? glm::dot(wi, frame_.n) / core::kPi : 0; }
+  std::optional<BsdfSample> sample(float, const Vec2& u) const {
+    BsdfSample s;
+    s.direction = cosineDirection(frame_, u);
+    if (!above(s.direction)) return std::nullopt;
+    s.pdf = pdf(s.direction);
+    s.weight = Vec3(1);
+    return s;
+  }
+
+ private:
+  bool above(const Vec3& wi) const { return glm::dot(wi, frame_.n) > 0 && glm::dot(wi, ng_) > 0; }
+  Vec3 ng_;
+  Frame frame_;
+};
+
 /// One path.
 class Path {
  public:
   Path(const World& world, const PathOptions& options, core::PixelSampler& sampler, RayCounters& counters)
       : world_(world), options_(options), sampler_(sampler), counters_(counters) {}
 
-  Vec3 radiance(Ray ray) {
+  Vec3 radiance(const Ray& ray) {
+    follow(ray, 0);
+    return sum_;
+  }
+
+  /// Radiance times pi that a white Lambert surface would send back: irradiance against `normal`.
+  Vec3 irradiance(const Surface& at, const Vec3& normal) {
+    Ray ray;
+    if (scatterBy(at, Receiver(at.ng, normal), ray)) follow(ray, 1);
+    return sum_ * core::kPi;
+  }
+
+ private:
+  /// `bounce`: scattering events before this ray.
+  void follow(Ray ray, int bounce) {
     Hit hit;
-    int bounce = 0, layers = 0;
+    int layers = 0;
     while (true) {
       if (!(bounce == 0 ? world_.intersectVisible(ray, hit, counters_)
                         : world_.intersect(ray, hit, counters_))) {
@@ -100,10 +146,8 @@ class Path {
       if (!scatter(surface, ray)) break;
       if (++bounce > kRouletteBounces && !survives()) break;
     }
-    return sum_;
   }
 
- private:
   float emissionWeight(const Hit& hit, const Vec3& direction) const {
     if (!(density_ > 0)) return 1;
     return powerHeuristic(density_, world_.lights().pdf(choice_, hit.triangle, direction, travelled_));
@@ -120,7 +164,11 @@ class Path {
   /// Direct light by light sampling, then the next ray. False when the path ends.
   bool scatter(const Surface& surface, Ray& ray) {
     if (world_.disperses() && surface.disperses()) followOneChannel();
-    const Scatterer material(surface, -ray.direction, options_, channel_);
+    return scatterBy(surface, Scatterer(surface, -ray.direction, options_, channel_), ray);
+  }
+
+  template <class Material>
+  bool scatterBy(const Surface& surface, const Material& material, Ray& ray) {
     const bool lights = !world_.lights().empty() && material.takesLight();
     if (lights) {
       choice_ = world_.lights().choose(surface.position);
@@ -137,7 +185,8 @@ class Path {
     return largest(throughput_) > 0;
   }
 
-  Vec3 directLight(const Surface& surface, const Scatterer& material) {
+  template <class Material>
+  Vec3 directLight(const Surface& surface, const Material& material) {
     const float uLight = sampler_.next1D();
     const Vec2 u = sampler_.next2D();
     LightSample light;
@@ -202,9 +251,7 @@ struct Moments {
 
 bool finite(const Vec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
-void addPath(const World& world, const Ray& ray, const PathOptions& options, core::PixelSampler& sampler,
-             RayCounters& counters, Moments& moments) {
-  const Vec3 c = Path(world, options, sampler, counters).radiance(ray);
+void addSample(const Vec3& c, RayCounters& counters, Moments& moments) {
   if (finite(c)) {
     moments.add(c);
   } else {
@@ -232,7 +279,7 @@ PathResult tracePaths(const World& world, const core::View& view, const PathOpti
         const Vec2 jitter = sampler.next2D();
         const Vec2 pixel(static_cast<float>(x) + jitter.x, static_cast<float>(y) + jitter.y);
         const Ray ray{view.camera().eye, glm::normalize(view.direction(pixel)), 0, core::kInfinity};
-        addPath(world, ray, options, sampler, tally, moments);
+        addSample(Path(world, options, sampler, tally).radiance(ray), tally, moments);
       }
       result.radiance.at(x, y) = moments.mean(n);
       if (options.variance) result.variance.at(x, y) = moments.varianceOfMean(n);
@@ -248,9 +295,28 @@ Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options
   const int n = std::max(1, options.samplesPerPixel);
   for (int i = 0; i < n; ++i) {
     core::PixelSampler sampler(0, 0, options.firstSample + static_cast<std::uint64_t>(i), options.seed);
-    addPath(world, ray, options, sampler, counters, moments);
+    addSample(Path(world, options, sampler, counters).radiance(ray), counters, moments);
   }
   return moments.mean(n);
+}
+
+IrradianceEstimate pathIrradiance(const World& world, const SurfacePoint& at, std::uint32_t stream,
+                                  const PathOptions& options, RayCounters& counters) {
+  const std::uint32_t triangle = world.firstTriangle(at.object) + at.triangle;
+  const Surface surface = surfaceOn(world, at.object, triangle, at.b1, at.b2, at.front);
+  const Vec3 normal = smoothNormal(world, at.object, triangle, at.b1, at.b2, surface.ng);
+  Moments means;
+  const int each = (std::max(1, options.samplesPerPixel) + kReplicates - 1) / kReplicates;
+  for (std::uint32_t r = 0; r < kReplicates; ++r) {
+    Moments moments;
+    for (int i = 0; i < each; ++i) {
+      core::PixelSampler sampler(stream, kIrradianceStream + r,
+                                 options.firstSample + static_cast<std::uint64_t>(i), options.seed);
+      addSample(Path(world, options, sampler, counters).irradiance(surface, normal), counters, moments);
+    }
+    means.add(moments.mean(each));
+  }
+  return {means.mean(kReplicates), means.varianceOfMean(kReplicates)};
 }
 
 }  // namespace saccade::raytrace

@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "raytrace/bsdf.h"
+#include "raytrace/surface_points.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
@@ -46,5 +47,18 @@ PathResult tracePaths(const World& world, const core::View& view, const PathOpti
 
 /// Radiance along one ray (unit direction), for tests: the mean of options.samplesPerPixel paths.
 Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options, RayCounters& counters);
+
+/// The irradiance that maps are measured against.
+struct IrradianceEstimate {
+  Vec3 mean{0};      ///< W/m^2
+  Vec3 variance{0};  ///< of the mean, per channel; unbiased
+};
+
+/// Light that arrives at a point of a surface by paths of every kind that this tracer finds (a point light's
+/// caustics through smooth glass and mirrors are not among them), against the interpolated normal;
+/// options.samplesPerPixel paths in 16 groups (rounded up), each from its sample options.firstSample on.
+/// `stream` tells points apart. Any thread.
+IrradianceEstimate pathIrradiance(const World& world, const SurfacePoint& at, std::uint32_t stream,
+                                  const PathOptions& options, RayCounters& counters);
 
 }  // namespace saccade::raytrace

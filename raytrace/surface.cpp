@@ -208,6 +208,19 @@ Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triang
   return makeSurface(world, hit, front ? -n : n);
 }
 
+Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  const Vec3& geometric) {
+  const TriangleShape& shape = world.shape(triangle);
+  Vec3 n = shape.normal[0] * (1 - u - v) + shape.normal[1] * u + shape.normal[2] * v;
+  const float length = glm::length(n);
+  if (!(length > 1e-6f)) return geometric;
+  const Instance* place = world.instanceOf(object);
+  n = place ? glm::normalize(place->normalToWorld * n) : n / length;
+  // Front and back are the geometric normal's: a shading normal that leans over is bent to its side.
+  const Vec3 ngFront = world.geometricNormal(object, triangle);
+  return glm::dot(ngFront, geometric) >= 0 ? n : -n;
+}
+
 Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v) {
   const TriangleRecord& record = world.record(triangle);
   Hit hit;

@@ -45,6 +45,11 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
 Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
                   bool front);
 
+/// The interpolated vertex normal at a hit, on the side of the unit vector `geometric`: what irradiance is
+/// measured against (normal maps are left to shading).
+Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
+                  const Vec3& geometric);
+
 /// Where the emission texture is read at a triangle's barycentric point.
 Vec2 emissionUv(const World& world, std::uint32_t triangle, float u, float v);
 /// Radiance that the triangle emits there.

@@ -63,7 +63,8 @@ std::vector<DensityEstimate> bakeDirect(const World& world, const TexelMap& texe
   direct.seed = options.seed;
   direct.threads = options.threads;
   std::vector<DirectEstimate> estimates(texels.texelCount());
-  directIrradiance(world, texels, layer, direct, progress, {share.from, middle}, estimates);
+  directIrradiance(world, texels, layer, allBlocks(texels.texelCount()), direct, progress,
+                   {share.from, middle}, estimates);
   double watts = 0;
   const FluxGrid flux = fluxOf(texels, estimates, watts);
   DensityOptions smoothing;

@@ -197,18 +197,16 @@ DirectEstimate integrateTexel(const World& world, const TexelMap& texels, std::s
 
 }  // namespace
 
-void directIrradiance(const World& world, const TexelMap& texels, int layer, const DirectOptions& options,
-                      const core::Progress& progress, ProgressShare share, std::span<DirectEstimate> out) {
+void directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
+                      const DirectOptions& options, const core::Progress& progress, ProgressShare share,
+                      std::span<DirectEstimate> out) {
   if (world.lights().empty()) return;
-  const auto width = static_cast<std::size_t>(texels.size());
-  parallelFor(options.threads, width, progress, share, [&](std::size_t row) {
+  parallelTexels(options.threads, blocks, texels.texelCount(), progress, share, [&](std::size_t texel) {
+    const std::int32_t chart = texels.chartOf(texel);
+    if (chart < 0 || !(texels.area(texel) > 0)) return;
+    if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;
     RayCounters counters;
-    for (std::size_t texel = row * width; texel < (row + 1) * width; ++texel) {
-      const std::int32_t chart = texels.chartOf(texel);
-      if (chart < 0 || !(texels.area(texel) > 0)) continue;
-      if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) continue;
-      out[texel] = integrateTexel(world, texels, texel, layer, options, counters);
-    }
+    out[texel] = integrateTexel(world, texels, texel, layer, options, counters);
   });
 }
 

@@ -64,9 +64,4 @@ void traceParticles(const World& world, const TexelMap& texels, std::uint64_t to
 /// Watts of one mean particle when `emitted` are emitted: what a weight of 1 stands for.
 double wattsPerWeight(const World& world, std::uint64_t emitted);
 
-/// The interpolated vertex normal at a hit, on the side of the unit vector `geometric`: what irradiance is
-/// measured against (normal maps are left to shading).
-Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
-                  const Vec3& geometric);
-
 }  // namespace saccade::raytrace
