@@ -32,12 +32,12 @@ struct Rows {
 
   void work(int worker) {
     try {
-      while (!failed && !progress.stop.stop_requested()) {
+      do {
         const int y = next.fetch_add(1);
         if (y >= height) return;
         row(y, worker);
         finished();
-      }
+      } while (!failed && !progress.stop.stop_requested());
     } catch (...) {
       const std::lock_guard lock(mutex);
       if (!failure) failure = std::current_exception();
@@ -56,8 +56,8 @@ struct Rows {
 
 }  // namespace
 
-void parallelRows(int height, int threads, const core::Progress& progress,
-                  const std::function<void(int, int)>& row) {
+int rowsUntilStopped(int height, int threads, const core::Progress& progress,
+                     const std::function<void(int, int)>& row) {
   Rows rows(height, progress, row);
   {
     std::vector<std::jthread> workers;
@@ -66,7 +66,12 @@ void parallelRows(int height, int threads, const core::Progress& progress,
     if (threads <= 0) rows.work(0);
   }
   if (rows.failure) std::rethrow_exception(rows.failure);
-  if (rows.done < height) throw core::Error("stopped on request");
+  return rows.done;  // handed out in order, and whatever was handed out was finished
+}
+
+void parallelRows(int height, int threads, const core::Progress& progress,
+                  const std::function<void(int, int)>& row) {
+  if (rowsUntilStopped(height, threads, progress, row) < height) throw core::Error("stopped on request");
 }
 
 }  // namespace saccade::raytrace

@@ -7,9 +7,14 @@
 
 namespace saccade::raytrace {
 
-/// Calls row(y, worker) once for each y in [0, height), worker in [0, max(threads, 1)). `threads` 0 = on the
-/// calling thread. Rethrows the first exception. Throws core::Error when progress.stop was requested before
-/// all rows were done.
+/// Calls row(y, worker) once for each y from 0 on, worker in [0, max(threads, 1)), until all of [0, height)
+/// are done or progress.stop was requested; at least one row is done even then. Returns how many: exactly the
+/// rows below were called and are finished. `threads` 0 = on the calling thread. Rethrows the first
+/// exception.
+int rowsUntilStopped(int height, int threads, const core::Progress& progress,
+                     const std::function<void(int y, int worker)>& row);
+
+/// All rows; throws core::Error when progress.stop was requested before they were done.
 void parallelRows(int height, int threads, const core::Progress& progress,
                   const std::function<void(int y, int worker)>& row);
 

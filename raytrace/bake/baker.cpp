@@ -1,17 +1,15 @@
 #include "raytrace/bake/baker.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <utility>
 
 #include "core/error.h"
 #include "raytrace/bake/density.h"
-#include "raytrace/bake/direct.h"
 #include "raytrace/bake/gutters.h"
-#include "raytrace/bake/imported_light.h"
-#include "raytrace/bake/particles.h"
-#include "raytrace/bake/texel_map.h"
+#include "raytrace/lights.h"
 
 namespace saccade::raytrace {
 namespace {
@@ -29,6 +27,11 @@ struct Preset {
 };
 // About 1, 10 and 60 seconds for a Cornell room on two cores.
 constexpr Preset kPresets[] = {{"preview", 1 << 18, 4}, {"medium", 1 << 22, 16}, {"high", 1 << 25, 64}};
+
+using Clock = std::chrono::steady_clock;
+// Shares of a bake's time, measured in the bundled scenes; only the guess until a stage's own pace is known.
+constexpr double kParticleWeight = 0.6, kDirectWeight = 0.3, kFinishWeight = 0.1;
+constexpr std::uint64_t kPaceShare = 50;  // a 50th of a stage is done first, to learn its pace
 
 const Preset& presetOf(const std::string& quality) {
   for (const Preset& p : kPresets) {
@@ -54,17 +57,9 @@ void storeHalves(const TexelMap& texels, const std::vector<Vec3>& irradiance, co
 }
 
 /// Smoothed direct light of one layer.
-std::vector<DensityEstimate> bakeDirect(const World& world, const TexelMap& texels, int layer,
-                                        const Preset& preset, const BakeOptions& options,
-                                        const core::Progress& progress, ProgressShare share) {
-  const double middle = share.from + 0.9 * (share.to - share.from);
-  DirectOptions direct;
-  direct.samples = preset.directSamples;
-  direct.seed = options.seed;
-  direct.threads = options.threads;
-  std::vector<DirectEstimate> estimates(texels.texelCount());
-  directIrradiance(world, texels, layer, allBlocks(texels.texelCount()), direct, progress,
-                   {share.from, middle}, estimates);
+std::vector<DensityEstimate> smoothDirect(const TexelMap& texels,
+                                          const std::vector<DirectEstimate>& estimates, int threads,
+                                          const core::Progress& progress, ProgressShare share) {
   double watts = 0;
   const FluxGrid flux = fluxOf(texels, estimates, watts);
   DensityOptions smoothing;
@@ -72,60 +67,173 @@ std::vector<DensityEstimate> bakeDirect(const World& world, const TexelMap& texe
   smoothing.enough = kDirectEnough;
   smoothing.doubt = 0;
   smoothing.maxRadius = kDirectMaxRadius;
-  smoothing.threads = options.threads;
+  smoothing.threads = threads;
   std::vector<DensityEstimate> out(texels.texelCount());
-  estimateDensity(texels, flux, 0, watts, smoothing, progress, {middle, share.to}, out);
+  estimateDensity(texels, flux, 0, watts, smoothing, progress, share, out);
   return out;
 }
 
-/// One layer's irradiance, without gutters.
-std::vector<Vec3> bakeLayer(const World& world, const TexelMap& texels, const ParticleState& particles,
-                            int layer, const Preset& preset, const BakeOptions& options,
-                            const core::Progress& progress, ProgressShare share) {
-  const double middle = share.from + 0.9 * (share.to - share.from);
-  const std::vector<DensityEstimate> direct =
-      bakeDirect(world, texels, layer, preset, options, progress, {share.from, middle});
-  DensityOptions density;
-  density.threads = options.threads;
-  std::vector<DensityEstimate> indirect(texels.texelCount());
-  estimateDensity(texels, particles.flux, layer, wattsPerWeight(world, particles.emitted), density, progress,
-                  {middle, share.to}, indirect);
-  std::vector<Vec3> irradiance(texels.texelCount());
-  for (std::size_t i = 0; i < irradiance.size(); ++i)
-    irradiance[i] = direct[i].irradiance + indirect[i].irradiance;
-  return irradiance;
+/// As bytes, for checkpoints.
+template <class T>
+std::span<std::byte> bytesOf(std::span<T> values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return std::as_writable_bytes(values);
+}
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 }  // namespace
 
 std::uint64_t photonsOf(const std::string& quality) { return presetOf(quality).photons; }
 
-core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, int atlasSize,
-                                const BakeOptions& options, const core::Progress& progress) {
-  const Preset& preset = presetOf(options.quality);
-  const TexelMap texels(world.scene(), atlasSize);
-  core::IlluminationMaps maps;
-  maps.width = maps.height = atlasSize;
-  maps.layers = texels.anyDoubleSided() ? 2 : 1;
-  maps.charts = std::move(charts);
-  maps.quality = options.quality;
-  maps.photons = options.photons ? options.photons : preset.photons;
-  maps.texels.reserve(texels.texelCount() * 3 * static_cast<std::size_t>(maps.layers));
+/// How far a stage has come at the moment of a report.
+struct BakeJob::Pace {
+  const BakeStage* stage = nullptr;  ///< null: the quick end
+  std::uint64_t done = 0;
+  double seconds = 0;
+  double finished = 0;  ///< share of the quick end
+};
 
-  constexpr double kParticleShare = 0.6;  // of the time
-  ParticleState particles(texels.texelCount(), maps.layers);
-  traceParticles(world, texels, maps.photons, options.seed, options.threads, progress, {0, kParticleShare},
-                 particles);
-  for (int layer = 0; layer < maps.layers; ++layer) {
-    const double step = (1 - kParticleShare) / maps.layers, from = kParticleShare + layer * step;
-    std::vector<Vec3> irradiance =
-        bakeLayer(world, texels, particles, layer, preset, options, progress, {from, from + step});
-    if (options.imported)
-      importIrradiance(texels, world.scene(), *options.imported, options.threads, irradiance);
-    fillGutters(texels, irradiance);
-    storeHalves(texels, irradiance, maps);
+BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
+    : world_(world),
+      options_(options),
+      texels_(world.scene(), atlasSize),
+      layers_(texels_.anyDoubleSided() ? 2 : 1),
+      particles_(texels_.texelCount(), layers_),
+      direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())) {
+  if (options_.photons == 0) options_.photons = presetOf(options.quality).photons;
+  addStages();
+}
+
+void BakeJob::addStages() {
+  const Preset& preset = presetOf(options_.quality);
+  BakeStage particles;
+  particles.name = "particles";
+  particles.units = world_.lights().empty() || !(world_.lights().totalPower() > 0) ? 0 : options_.photons;
+  particles.weight = kParticleWeight;
+  particles.results = bytesOf(particles_.flux.cells());
+  particles.work = [this](std::uint64_t first, std::uint64_t last, const core::Progress& progress) {
+    particles_.emitted = first;
+    traceParticles(world_, texels_, last, options_.seed, options_.threads, progress, particles_);
+    return particles_.emitted;
+  };
+  stages_.push_back(std::move(particles));
+  for (int layer = 0; layer < layers_; ++layer) {
+    DirectOptions direct;
+    direct.samples = preset.directSamples;
+    direct.seed = options_.seed;
+    direct.threads = options_.threads;
+    BakeStage stage;
+    stage.name = layer == 0 ? "direct light" : "direct light on backs";
+    stage.units = allBlocks(texels_.texelCount()).last;
+    stage.weight = kDirectWeight / layers_;
+    const std::span<DirectEstimate> out(direct_[static_cast<std::size_t>(layer)]);
+    stage.results = bytesOf(out);
+    stage.work = [this, layer, direct, out](std::uint64_t first, std::uint64_t last,
+                                            const core::Progress& progress) -> std::uint64_t {
+      return directIrradiance(world_, texels_, layer, {first, last}, direct, progress, out);
+    };
+    stages_.push_back(std::move(stage));
+  }
+}
+
+bool BakeJob::advance(const std::stop_token& pause, const BakeReport& report) {
+  for (BakeStage& stage : stages_)
+    if (stage.independent && !run(stage, stage.units / kPaceShare, pause, report)) return false;
+  for (BakeStage& stage : stages_)
+    if (!run(stage, stage.units, pause, report)) return false;
+  return true;
+}
+
+bool BakeJob::run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause,
+                  const BakeReport& report) {
+  if (stage.done >= last) return true;
+  const Clock::time_point start = Clock::now();
+  core::Progress slice{{}, pause};
+  if (report) {
+    slice.report = [&](double fraction) {
+      Pace now{&stage, stage.done, stage.seconds + secondsSince(start)};
+      now.done += static_cast<std::uint64_t>(fraction * static_cast<double>(last - stage.done));
+      report(progressAt(now, stage.name));
+    };
+  }
+  stage.done = stage.work(stage.done, last, slice);
+  stage.seconds += secondsSince(start);
+  return stage.done == last && !pause.stop_requested();
+}
+
+BakeProgress BakeJob::progressAt(const Pace& now, std::string_view stage) {
+  // Seconds spent and left where a stage's pace is known; the others by their weights beside those.
+  double spent = 0, left = 0, knownWeight = 0, unknownWeight = kFinishWeight * (1 - now.finished);
+  for (const BakeStage& s : stages_) {
+    const std::uint64_t done = &s == now.stage ? now.done : s.done;
+    const double seconds = &s == now.stage ? now.seconds : s.seconds;
+    spent += seconds;
+    if (s.units == 0) continue;
+    if (done == 0) {
+      unknownWeight += s.weight;
+      continue;
+    }
+    left += seconds * static_cast<double>(s.units - done) / static_cast<double>(done);
+    knownWeight += s.weight;
+  }
+  if (knownWeight > 0) {
+    const double perWeight = (spent + left) / knownWeight;
+    left += perWeight * unknownWeight;
+    spent += perWeight * kFinishWeight * now.finished;
+  }
+  if (now.finished >= 1) left = 0;
+  if (spent + left > 0) fraction_ = std::max(fraction_, spent / (spent + left));
+  return {now.finished >= 1 ? 1.0 : fraction_, left, stage};
+}
+
+std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress) {
+  const std::vector<DensityEstimate> direct =
+      smoothDirect(texels_, direct_[static_cast<std::size_t>(layer)], options_.threads, progress, {0, 0.5});
+  DensityOptions density;
+  density.threads = options_.threads;
+  std::vector<DensityEstimate> indirect(texels_.texelCount());
+  estimateDensity(texels_, particles_.flux, layer, wattsPerWeight(world_, stages_.front().done), density,
+                  progress, {0.5, 1}, indirect);
+  std::vector<Vec3> irradiance(texels_.texelCount());
+  for (std::size_t i = 0; i < irradiance.size(); ++i)
+    irradiance[i] = direct[i].irradiance + indirect[i].irradiance;
+  if (options_.imported)
+    importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
+  fillGutters(texels_, irradiance);
+  return irradiance;
+}
+
+core::IlluminationMaps BakeJob::finish(core::SceneCharts charts, const std::stop_token& stop,
+                                       const BakeReport& report) {
+  core::IlluminationMaps maps;
+  maps.width = maps.height = texels_.size();
+  maps.layers = layers_;
+  maps.charts = std::move(charts);
+  maps.quality = options_.quality;
+  maps.photons = options_.photons;
+  maps.texels.reserve(texels_.texelCount() * 3 * static_cast<std::size_t>(layers_));
+  for (int layer = 0; layer < layers_; ++layer) {
+    core::Progress progress{{}, stop};
+    if (report) {
+      progress.report = [&](double fraction) {
+        report(progressAt({nullptr, 0, 0, (layer + fraction) / layers_}, "smoothing"));
+      };
+    }
+    storeHalves(texels_, finishLayer(layer, progress), maps);
   }
   return maps;
+}
+
+core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, int atlasSize,
+                                const BakeOptions& options, const core::Progress& progress) {
+  BakeJob job(world, atlasSize, options);
+  BakeReport report;
+  if (progress.report) report = [&](const BakeProgress& p) { progress.report(p.fraction); };
+  if (!job.advance(progress.stop, report)) throw core::Error("stopped on request");
+  return job.finish(std::move(charts), progress.stop, report);
 }
 
 }  // namespace saccade::raytrace

@@ -1,14 +1,26 @@
 // The illumination maps of a scene (Haber 2001, section 4): direct light by shadow rays per texel, indirect
 // light and caustics by particle tracing with density estimation.
+//
+// A bake is a job of long stages (particles; direct light of each layer), which can pause and go on with the
+// same bits, and a quick end (density estimation, smoothing, gutters, halves), which is done anew when it was
+// interrupted.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/maps.h"
 #include "core/progress.h"
+#include "raytrace/bake/bake_stage.h"
+#include "raytrace/bake/direct.h"
 #include "raytrace/bake/imported_light.h"
+#include "raytrace/bake/particles.h"
+#include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
@@ -24,11 +36,60 @@ struct BakeOptions {
 /// Particles that a quality stands for. Throws core::UsageError for an unknown name.
 std::uint64_t photonsOf(const std::string& quality);
 
-/// Irradiance of every texel, W/m^2, without albedo; gutters filled so that bilinear look-ups near chart
-/// borders read no empty texel; `key` left 0 for the caller. `charts` and `atlasSize` come from makeCharts
-/// and were applied to the world's scene (core::applyCharts); the charts are moved into the result. Layer 1
-/// exists when some material that shows irradiance is double-sided. Progress from any of the threads. Throws
-/// core::UsageError for an unknown quality, core::Error when stopped.
+struct BakeProgress {
+  double fraction = 0;  ///< of the time that the whole job takes, [0, 1]; never falls
+  double secondsLeft = 0;
+  std::string_view stage;  ///< what is being done
+};
+/// Called from any of the threads, one at a time, at most some tens of times a second; may be empty.
+using BakeReport = std::function<void(const BakeProgress&)>;
+
+/// One bake. One thread owns it; it starts threads of its own as the options say.
+class BakeJob {
+ public:
+  /// The world's scene is charted (core::applyCharts) for an atlas of this size; the world must outlive the
+  /// job. Throws core::UsageError for an unknown quality.
+  BakeJob(const World& world, int atlasSize, const BakeOptions& options);
+  BakeJob(const BakeJob&) = delete;
+  BakeJob& operator=(const BakeJob&) = delete;
+
+  /// Works on the stages until they are done (true) or until `pause` was requested (false), at least one
+  /// piece of work. In between the job may be kept (stages()); any pauses lead to the same bits.
+  bool advance(const std::stop_token& pause, const BakeReport& report);
+
+  /// What the long stages have found, in the order of work. A job of the same world and options goes on from
+  /// `done`, `seconds` and `results` of another.
+  std::span<BakeStage> stages() { return stages_; }
+
+  /// The quick end, once advance() returned true. Takes `charts` into the maps; `key` is left 0. Throws
+  /// core::Error when stopped; it may then be called again.
+  core::IlluminationMaps finish(core::SceneCharts charts, const std::stop_token& stop,
+                                const BakeReport& report);
+
+ private:
+  struct Pace;
+
+  void addStages();
+  /// Works on one stage up to `last`; false when paused.
+  bool run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause, const BakeReport& report);
+  BakeProgress progressAt(const Pace& now, std::string_view stage);
+  std::vector<Vec3> finishLayer(int layer, const core::Progress& progress);
+
+  const World& world_;
+  BakeOptions options_;
+  TexelMap texels_;
+  int layers_;
+  ParticleState particles_;
+  std::vector<std::vector<DirectEstimate>> direct_;  ///< by layer
+  std::vector<BakeStage> stages_;
+  double fraction_ = 0;  ///< as reported last
+};
+
+/// A whole bake: irradiance of every texel, W/m^2, without albedo; gutters filled so that bilinear look-ups
+/// near chart borders read no empty texel; `key` left 0 for the caller. `charts` and `atlasSize` come from
+/// makeCharts and were applied to the world's scene (core::applyCharts); the charts are moved into the
+/// result. Layer 1 exists when some material that shows irradiance is double-sided. Progress from any of the
+/// threads. Throws core::UsageError for an unknown quality, core::Error when stopped.
 core::IlluminationMaps bakeMaps(const World& world, core::SceneCharts charts, int atlasSize,
                                 const BakeOptions& options, const core::Progress& progress);
 

@@ -197,11 +197,11 @@ DirectEstimate integrateTexel(const World& world, const TexelMap& texels, std::s
 
 }  // namespace
 
-void directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                      const DirectOptions& options, const core::Progress& progress, ProgressShare share,
-                      std::span<DirectEstimate> out) {
-  if (world.lights().empty()) return;
-  parallelTexels(options.threads, blocks, texels.texelCount(), progress, share, [&](std::size_t texel) {
+std::size_t directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
+                             const DirectOptions& options, const core::Progress& progress,
+                             std::span<DirectEstimate> out) {
+  if (world.lights().empty()) return blocks.last;
+  return parallelTexels(options.threads, blocks, texels.texelCount(), progress, [&](std::size_t texel) {
     const std::int32_t chart = texels.chartOf(texel);
     if (chart < 0 || !(texels.area(texel) > 0)) return;
     if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;

@@ -27,9 +27,10 @@ struct DirectEstimate {
 /// For the texels of `blocks`: out[texel] = mean over the texel's covered area of the light that arrives
 /// straight from lights (through alpha-blended surfaces too) at its front (layer 0) or back (layer 1,
 /// double-sided charts only), W/m^2, against the interpolated normal. Texels without surface are left alone.
-/// Same bits for any number of threads. Throws core::Error when stopped.
-void directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                      const DirectOptions& options, const core::Progress& progress, ProgressShare share,
-                      std::span<DirectEstimate> out);
+/// Same bits for any number of threads and any ranges. Returns the first block that was not done, for a stop
+/// was requested; all before it are.
+std::size_t directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
+                             const DirectOptions& options, const core::Progress& progress,
+                             std::span<DirectEstimate> out);
 
 }  // namespace saccade::raytrace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "core/progress.h"
@@ -15,10 +17,10 @@ struct ProgressShare {
   double from = 0, to = 1;
 };
 
-/// Texels are worked on in blocks of so many: what a bake can stop after and go on from.
-inline constexpr std::size_t kTexelsPerBlock = 4096;
+/// Texels are worked on in blocks of so many: what a bake can pause after and go on from.
+inline constexpr std::size_t kTexelsPerBlock = 256;
 
-/// Blocks [first, last) of an atlas.
+/// Blocks [first, last) of an atlas, in the order of parallelTexels.
 struct BlockRange {
   std::size_t first = 0, last = 0;
 };
@@ -40,14 +42,34 @@ void parallelFor(int threads, std::size_t count, const core::Progress& progress,
                [&](int i, int) { work(static_cast<std::size_t>(i)); });
 }
 
-/// work(texel) once for every texel < `texels` of the blocks.
+/// Blocks in an order whose every beginning is spread evenly over the atlas (multiples of the golden ratio),
+/// so that the time which some took tells how long the rest will take.
+class BlockOrder {
+ public:
+  explicit BlockOrder(std::size_t count) : count_(count) {
+    if (count < 2) return;
+    stride_ = static_cast<std::size_t>(0.6180339887 * static_cast<double>(count));
+    while (std::gcd(stride_, count) != 1) ++stride_;
+  }
+  std::size_t at(std::size_t i) const { return i * stride_ % count_; }
+
+ private:
+  std::size_t count_;
+  std::size_t stride_ = 1;
+};
+
+/// work(texel) once for every texel < `texels` of the blocks, until all are done or a stop was requested (at
+/// least one block is done even then). Returns the first block that is not done; all before it are.
 template <class Work>
-void parallelTexels(int threads, BlockRange blocks, std::size_t texels, const core::Progress& progress,
-                    ProgressShare share, Work&& work) {
-  parallelFor(threads, blocks.last - blocks.first, progress, share, [&](std::size_t i) {
-    const std::size_t begin = (blocks.first + i) * kTexelsPerBlock;
-    for (std::size_t t = begin; t < std::min(texels, begin + kTexelsPerBlock); ++t) work(t);
-  });
+std::size_t parallelTexels(int threads, BlockRange blocks, std::size_t texels, const core::Progress& progress,
+                           Work&& work) {
+  const BlockOrder order(allBlocks(texels).last);
+  const int done =
+      rowsUntilStopped(static_cast<int>(blocks.last - blocks.first), threads, progress, [&](int i, int) {
+        const std::size_t begin = order.at(blocks.first + static_cast<std::size_t>(i)) * kTexelsPerBlock;
+        for (std::size_t t = begin; t < std::min(texels, begin + kTexelsPerBlock); ++t) work(t);
+      });
+  return blocks.first + static_cast<std::size_t>(done);
 }
 
 }  // namespace saccade::raytrace

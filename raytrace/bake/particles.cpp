@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/math/random.h"
 #include "raytrace/bake/duplicates.h"
@@ -147,17 +148,18 @@ void FluxGrid::add(std::size_t texel, int layer, const Vec3& weight) {
 }
 
 void traceParticles(const World& world, const TexelMap& texels, std::uint64_t total, std::uint32_t seed,
-                    int threads, const core::Progress& progress, ProgressShare share, ParticleState& state) {
+                    int threads, const core::Progress& progress, ParticleState& state) {
   if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= state.emitted) return;
   const std::uint64_t first = state.emitted;
-  const std::uint64_t batches = (total - first + kBatch - 1) / kBatch;
+  const auto batches = static_cast<int>(
+      std::min<std::uint64_t>((total - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
   const Duplicates duplicates(world);
-  parallelFor(threads, batches, progress, share, [&](std::size_t batch) {
+  const int done = rowsUntilStopped(batches, threads, progress, [&](int batch, int) {
     Tracer tracer(world, texels, duplicates, state.flux);
-    const std::uint64_t begin = first + batch * kBatch;
+    const std::uint64_t begin = first + static_cast<std::uint64_t>(batch) * kBatch;
     for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) tracer.follow(i, seed);
   });
-  state.emitted = total;
+  state.emitted = std::min(total, first + static_cast<std::uint64_t>(done) * kBatch);
 }
 
 double wattsPerWeight(const World& world, std::uint64_t emitted) {

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/progress.h"
@@ -40,6 +41,7 @@ class FluxGrid {
   void add(std::size_t texel, int layer, const Vec3& weight);
   Cell& cell(std::size_t texel, int layer) { return cells_[layer * texels_ + texel]; }
   const Cell& cell(std::size_t texel, int layer) const { return cells_[layer * texels_ + texel]; }
+  std::span<Cell> cells() { return cells_; }  ///< texels of layer 0, then of layer 1
 
  private:
   std::size_t texels_;
@@ -56,10 +58,11 @@ struct ParticleState {
 
 /// Emits particles [state.emitted, total) and follows them through every BSDF of the tracer with Russian
 /// roulette; at each hit on a side that shows irradiance, deposits the indirect flux in the texel hit: layer
-/// 0 for fronts, 1 for backs of double-sided materials. Deterministic for any `threads` (0 = inline). Throws
-/// core::Error when stopped; state.emitted is then unchanged and state.flux not to be used.
+/// 0 for fronts, 1 for backs of double-sided materials. Deterministic for any `threads` (0 = inline) and any
+/// pauses: when a stop is requested it ends after whole batches, at least one, and state.emitted says how
+/// far.
 void traceParticles(const World& world, const TexelMap& texels, std::uint64_t total, std::uint32_t seed,
-                    int threads, const core::Progress& progress, ProgressShare share, ParticleState& state);
+                    int threads, const core::Progress& progress, ParticleState& state);
 
 /// Watts of one mean particle when `emitted` are emitted: what a weight of 1 stands for.
 double wattsPerWeight(const World& world, std::uint64_t emitted);
