@@ -4,6 +4,7 @@
 #include "bench/harness/experiment.h"
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
+#include "bench/maps/maps.h"
 #include "bench/moving/moving.h"
 #include "bench/paper/figure5.h"
 #include "bench/paper/figure6.h"
@@ -40,6 +41,10 @@ const std::vector<Experiment>& allExperiments() {
        "What does a light sample among many lamps cost, and how far off is it?",
        {Suite::quick},
        &measureManyLights},
+      {"maps",
+       "How far are the illumination maps from the light that is there, and how soon, beside path tracing?",
+       {Suite::quick, Suite::paper},
+       &measureMaps},
       {"moving",
        "How good is the picture while the camera moves, at 8 to 125 ms a frame?",
        {Suite::quick, Suite::paper},

@@ -249,6 +249,17 @@ struct Moments {
   }
 };
 
+/// A point that takes light, and the normal that it takes it against.
+struct Receiving {
+  Surface surface;
+  Vec3 normal;
+
+  Receiving(const World& world, const SurfacePoint& at)
+      : surface(surfaceOn(world, at.object, world.firstTriangle(at.object) + at.triangle, at.b1, at.b2,
+                          at.front)),
+        normal(smoothNormal(world, at.object, surface.triangle, at.b1, at.b2, surface.ng)) {}
+};
+
 bool finite(const Vec3& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 void addSample(const Vec3& c, RayCounters& counters, Moments& moments) {
@@ -300,11 +311,19 @@ Vec3 pathRadiance(const World& world, const Ray& ray, const PathOptions& options
   return moments.mean(n);
 }
 
+Vec3 irradiancePath(const World& world, const SurfacePoint& at, std::uint32_t stream,
+                    const PathOptions& options, RayCounters& counters) {
+  const Receiving point(world, at);
+  core::PixelSampler sampler(stream, kIrradianceStream + kReplicates, options.firstSample, options.seed);
+  const Vec3 e = Path(world, options, sampler, counters).irradiance(point.surface, point.normal);
+  if (finite(e)) return e;
+  ++counters.nonFinite;
+  return Vec3(0);
+}
+
 IrradianceEstimate pathIrradiance(const World& world, const SurfacePoint& at, std::uint32_t stream,
                                   const PathOptions& options, RayCounters& counters) {
-  const std::uint32_t triangle = world.firstTriangle(at.object) + at.triangle;
-  const Surface surface = surfaceOn(world, at.object, triangle, at.b1, at.b2, at.front);
-  const Vec3 normal = smoothNormal(world, at.object, triangle, at.b1, at.b2, surface.ng);
+  const Receiving point(world, at);
   Moments means;
   const int each = (std::max(1, options.samplesPerPixel) + kReplicates - 1) / kReplicates;
   for (std::uint32_t r = 0; r < kReplicates; ++r) {
@@ -312,7 +331,8 @@ IrradianceEstimate pathIrradiance(const World& world, const SurfacePoint& at, st
     for (int i = 0; i < each; ++i) {
       core::PixelSampler sampler(stream, kIrradianceStream + r,
                                  options.firstSample + static_cast<std::uint64_t>(i), options.seed);
-      addSample(Path(world, options, sampler, counters).irradiance(surface, normal), counters, moments);
+      addSample(Path(world, options, sampler, counters).irradiance(point.surface, point.normal), counters,
+                moments);
     }
     means.add(moments.mean(each));
   }

@@ -61,4 +61,9 @@ struct IrradianceEstimate {
 IrradianceEstimate pathIrradiance(const World& world, const SurfacePoint& at, std::uint32_t stream,
                                   const PathOptions& options, RayCounters& counters);
 
+/// One such path, W/m^2: sample options.firstSample of `stream`, which shares no number with those of
+/// pathIrradiance. Its mean over all samples is the irradiance; a path that is not finite is 0. Any thread.
+Vec3 irradiancePath(const World& world, const SurfacePoint& at, std::uint32_t stream,
+                    const PathOptions& options, RayCounters& counters);
+
 }  // namespace saccade::raytrace

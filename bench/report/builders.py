@@ -31,6 +31,9 @@ from records import Record
 # Variants of a method, and the value that stands for each while another one is varied.
 _USUAL = {"order": "attention", "cache": "on", "attention": "0.5"}
 
+# Labels that say which setting a point of a curve is, not which curve.
+_ALONG_A_CURVE = ("scene", "path", "quality")
+
 # Experiments that are measured against something else than the scene's reference.
 _OTHER_TRUTH = ("order", "peers")
 # Where a record stands on the x axis, with the range of its repeats.
@@ -101,7 +104,7 @@ def questions(records: Sequence[Record]) -> list[tuple[str, list[Record], list[s
     def fixed(record: Record, but: str = "") -> bool:
         return all(record.labels.get(name, usual[name]) == usual[name] for name in options if name != but)
 
-    others = [name for name in varying(records) if name not in ("scene", "path", *_USUAL)]
+    others = [name for name in varying(records) if name not in (*_ALONG_A_CURVE, *_USUAL)]
     methods = [record for record in records if fixed(record)]
     found = [("methods", methods, others or ["method"])]
     for option in options:

@@ -54,6 +54,11 @@ SECTIONS: dict[str, Section] = {
             timing=_TIMES,
         ),
     ),
+    "maps": Section(
+        "Illumination maps",
+        "How far are the maps from the light that is there after so many seconds, beside path tracing from every texel?",
+        partial(error_against_cost, metrics=("relerr",), x_label="time spent (s)"),
+    ),
     "peers": Section(
         "Beside other renderers",
         "The same scene by Blender's Cycles and by us: whose picture is nearer to the reference after so many seconds?",
