@@ -62,6 +62,12 @@ float Bsdf::diffuseProbability(unsigned lobes) const {
   return lobes & kLobeSpecular ? diffuseShare_ : 1;
 }
 
+float Bsdf::diffuseChance() const {
+  if (!layered_) return diffuseProbability(kLobeAll);
+  const float total = estimate(kLobeAll);
+  return total > 0 ? estimate(kLobeDiffuse) / total : 0;
+}
+
 unsigned Bsdf::roughLobes() const {
   unsigned lobes = 0;
   if (base_.any() && !base_.delta()) lobes |= kLobeBase;

@@ -73,6 +73,8 @@ class Bsdf {
   float alpha() const;
   /// About what the lobes reflect and transmit of light towards the eye, luminance; deltas counted.
   float estimate(unsigned lobes) const;
+  /// Probability with which sample() with kLobeAll draws the diffuse lobe.
+  float diffuseChance() const;
 
   /// From now on the index that one channel of light sees: Surface::iorOf.
   void setIor(float ior) { base_.setIor(ior); }

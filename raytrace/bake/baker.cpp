@@ -101,7 +101,7 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
       options_(options),
       texels_(world.scene(), atlasSize),
       layers_(texels_.anyDoubleSided() ? 2 : 1),
-      particles_(texels_.texelCount(), layers_),
+      particles_(world, texels_.texelCount(), layers_),
       direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())) {
   if (options_.photons == 0) options_.photons = presetOf(options.quality).photons;
   addStages();
@@ -116,7 +116,8 @@ void BakeJob::addStages() {
   particles.results = bytesOf(particles_.flux.cells());
   particles.work = [this](std::uint64_t first, std::uint64_t last, const core::Progress& progress) {
     particles_.emitted = first;
-    traceParticles(world_, texels_, last, options_.seed, options_.threads, progress, particles_);
+    const ParticleOptions tracing{.whole = last, .seed = options_.seed, .threads = options_.threads};
+    traceParticles(world_, texels_, tracing, progress, particles_);
     return particles_.emitted;
   };
   stages_.push_back(std::move(particles));
@@ -194,12 +195,17 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
       smoothDirect(texels_, direct_[static_cast<std::size_t>(layer)], options_.threads, progress, {0, 0.5});
   DensityOptions density;
   density.threads = options_.threads;
-  std::vector<DensityEstimate> indirect(texels_.texelCount());
-  estimateDensity(texels_, particles_.flux, layer, wattsPerWeight(world_, stages_.front().done), density,
-                  progress, {0.5, 1}, indirect);
+  const double watts = wattsPerWeight(world_, stages_.front().done);
+  std::vector<DensityEstimate> indirect(texels_.texelCount()), caustic(texels_.texelCount());
+  estimateDensity(texels_, particles_.flux, ParticleState::indirectPlane(layer), watts, density, progress,
+                  {0.5, 1}, indirect);
+  if (particles_.caustics) {
+    estimateDensity(texels_, particles_.flux, particles_.causticPlane(layer), watts, density,
+                    {{}, progress.stop}, {}, caustic);
+  }
   std::vector<Vec3> irradiance(texels_.texelCount());
   for (std::size_t i = 0; i < irradiance.size(); ++i)
-    irradiance[i] = direct[i].irradiance + indirect[i].irradiance;
+    irradiance[i] = direct[i].irradiance + indirect[i].irradiance + caustic[i].irradiance;
   if (options_.imported)
     importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
   fillGutters(texels_, irradiance);

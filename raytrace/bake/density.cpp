@@ -29,16 +29,16 @@ struct WindowSum {
   double effectiveCount() const { return squared > 0 ? luminance() * luminance() / squared : 0; }
 };
 
-/// Sums over any rectangle of one layer in constant time. Flux sums are integers modulo 2^64: exact.
+/// Sums over any rectangle of one plane in constant time. Flux sums are integers modulo 2^64: exact.
 class SummedArea {
  public:
-  SummedArea(const TexelMap& texels, const FluxGrid& flux, int layer)
+  SummedArea(const TexelMap& texels, const FluxGrid& flux, int plane)
       : stride_(static_cast<std::size_t>(texels.size()) + 1), sums_(stride_ * stride_) {
     for (std::size_t y = 1; y < stride_; ++y) {
       Entry row;
       for (std::size_t x = 1; x < stride_; ++x) {
         const std::size_t texel = (y - 1) * (stride_ - 1) + x - 1;
-        const FluxGrid::Cell& cell = flux.cell(texel, layer);
+        const FluxGrid::Cell& cell = flux.cell(texel, plane);
         for (int c = 0; c < 3; ++c) row.flux[c] += cell.rgb[c];
         row.flux[3] += cell.squared;
         row.area += texels.area(texel);
@@ -149,10 +149,10 @@ FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, 
   return flux;
 }
 
-void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int layer, double watts,
+void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int plane, double watts,
                      const DensityOptions& options, const core::Progress& progress, ProgressShare share,
                      std::span<DensityEstimate> out) {
-  const SummedArea sums(texels, flux, layer);
+  const SummedArea sums(texels, flux, plane);
   const double middle = 0.5 * (share.from + share.to);
   // The chosen widths are themselves noisy: a texel takes the median of its neighbourhood's.
   std::vector<std::uint8_t> chosen(texels.texelCount(), kNoRadius);
@@ -161,8 +161,7 @@ void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int layer, do
     for (int x = 0; x < texels.size(); ++x) {
       const std::size_t texel = row * static_cast<std::size_t>(texels.size()) + static_cast<std::size_t>(x);
       if (texels.chartOf(texel) < 0 || !(texels.area(texel) > 0)) continue;
-      const ChartRect& chart = texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))];
-      if (layer == 0 || chart.doubleSided) visit(texel, chart, x, y);
+      visit(texel, texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))], x, y);
     }
   };
   const auto rows = static_cast<std::size_t>(texels.size());

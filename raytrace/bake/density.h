@@ -37,9 +37,9 @@ struct DensityEstimate {
 /// 0.
 FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, double& watts);
 
-/// Estimates for the layer's texels with surface; others are left alone. `watts`: wattsPerWeight. Same bits
-/// for any number of threads. Throws core::Error when stopped.
-void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int layer, double watts,
+/// Estimates by one plane of `flux` for all texels with surface; others are left alone. `watts`:
+/// wattsPerWeight. Same bits for any number of threads. Throws core::Error when stopped.
+void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int plane, double watts,
                      const DensityOptions& options, const core::Progress& progress, ProgressShare share,
                      std::span<DensityEstimate> out);
 

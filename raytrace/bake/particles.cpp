@@ -22,14 +22,15 @@ constexpr float kMaxNormalRatio = 4;  // bound on cos(shading) / cos(geometric) 
 /// Follows one particle at a time; one per thread.
 class Tracer {
  public:
-  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, FluxGrid& flux)
+  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, ParticleState& state)
       : world_(world),
         texels_(texels),
         duplicates_(duplicates),
-        flux_(flux),
+        state_(state),
         perWatt_(static_cast<float>(1 / world.lights().totalPower())) {}
 
-  void follow(std::uint64_t index, std::uint32_t seed) {
+  /// `whole`: beyond the first diffuse surface.
+  void follow(std::uint64_t index, std::uint32_t seed, bool whole) {
     core::PixelSampler random(kParticleStream, 0, index, seed);
     const float uLight = random.next1D();
     const Vec2 uPosition = random.next2D();
@@ -38,8 +39,9 @@ class Tracer {
     Ray ray{offsetOrigin(start.origin, start.normal, start.direction, start.offset), start.direction, 0,
             core::kInfinity};
     Inside inside;
-    int channel = -1;    // the only one followed, from the first solid that splits light
     bool direct = true;  // has met nothing but see-through surfaces: what shadow rays account for
+    channel_ = -1;
+    diffuse_ = false;
     for (int event = 0; event < kMaxEvents && core::luminance(weight) > 0; ++event) {
       Hit hit;
       if (!world_.intersect(ray, hit, counters_)) return;
@@ -53,7 +55,7 @@ class Tracer {
       }
       if (direct) weight *= rangeFactor(start.range, glm::length(surface.position - start.origin));
       direct = false;
-      if (!surface.scatters() || !scatter(surface, random, ray, weight, channel)) return;
+      if (!surface.scatters() || !scatter(surface, random, whole, ray, weight)) return;
       if (world_.attenuates()) inside.leave(surface, ray.direction);
     }
   }
@@ -97,38 +99,49 @@ class Tracer {
     const core::Object& object = scene.objects[objectIndex];
     if (!front && !scene.materials[static_cast<std::size_t>(object.material)].doubleSided) return;
     const std::size_t texel = texels_.texelAt(lightmapUv);
-    if (texels_.chartOf(texel) >= 0) flux_.add(texel, front ? 0 : 1, weight);  // else shows no irradiance
+    if (texels_.chartOf(texel) < 0) return;  // shows no irradiance
+    const int layer = front ? 0 : 1;
+    state_.flux.add(texel, diffuse_ ? ParticleState::indirectPlane(layer) : state_.causticPlane(layer),
+                    weight);
   }
 
-  /// The next ray; false when the particle is absorbed.
-  static bool scatter(const Surface& surface, core::PixelSampler& random, Ray& ray, Vec3& weight,
-                      int& channel) {
+  /// The next ray; false when the particle is absorbed, or is not to be followed beyond a diffuse surface.
+  bool scatter(const Surface& surface, core::PixelSampler& random, bool whole, Ray& ray, Vec3& weight) {
     Bsdf bsdf(surface, -ray.direction);
     if (surface.disperses()) {
-      if (channel < 0) {
-        channel = std::min(2, static_cast<int>(3 * random.next1D()));
-        weight = heroOf(weight, channel);
+      if (channel_ < 0) {
+        channel_ = std::min(2, static_cast<int>(3 * random.next1D()));
+        weight = heroOf(weight, channel_);
       }
-      bsdf.setIor(surface.iorOf(channel));
+      bsdf.setIor(surface.iorOf(channel_));
     }
     const float uLobe = random.next1D();
-    const std::optional<BsdfSample> sample = bsdf.sample(uLobe, random.next2D(), kLobeAll);
+    const float chance = bsdf.diffuseChance();
+    const bool diffuse = uLobe < chance;
+    if (diffuse && !whole) return false;
+    const float drawn = diffuse ? chance : 1 - chance;
+    const float uRest = std::min((diffuse ? uLobe : uLobe - chance) / drawn, 0x1.fffffep-1f);
+    const std::optional<BsdfSample> sample =
+        bsdf.sample(uRest, random.next2D(), diffuse ? kLobeDiffuse : kLobeSpecular);
     const float uSurvive = random.next1D();
     if (!sample) return false;
-    const Vec3 next = weight * sample->weight;
+    const Vec3 next = weight * sample->weight / drawn;
     // Weights stay near that of the mean particle: survive with the share of luminance that is left.
     const float survival = std::min(1.0f, core::luminance(next) / core::luminance(weight));
     if (!(uSurvive < survival)) return false;
     weight = next / survival;
     ray = surface.leave(sample->direction);
+    diffuse_ |= diffuse;
     return true;
   }
 
   const World& world_;
   const TexelMap& texels_;
   const Duplicates& duplicates_;
-  FluxGrid& flux_;
+  ParticleState& state_;
   float perWatt_;
+  bool diffuse_ = false;  ///< the present particle has met a diffuse lobe
+  int channel_ = -1;      ///< the only one that it still has, from the first solid that splits light
   RayCounters counters_;
 };
 
@@ -147,17 +160,27 @@ void FluxGrid::add(std::size_t texel, int layer, const Vec3& weight) {
   accumulate(cell.squared, units(y * y));
 }
 
-void traceParticles(const World& world, const TexelMap& texels, std::uint64_t total, std::uint32_t seed,
-                    int threads, const core::Progress& progress, ParticleState& state) {
-  if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= state.emitted) return;
-  const std::uint64_t first = state.emitted;
+bool castsCaustics(const World& world) {
+  for (std::uint32_t o = 0; o < world.scene().objects.size(); ++o) {
+    const CompiledMaterial& m = world.materialOf(o);
+    if (m.metallic > 0 || m.transmission > 0 || m.extension || m.dielectricF90 > 0) return true;
+  }
+  return false;
+}
+
+void traceParticles(const World& world, const TexelMap& texels, const ParticleOptions& options,
+                    const core::Progress& progress, ParticleState& state) {
+  const std::uint64_t first = state.emitted, total = options.whole + (state.caustics ? options.caustic : 0);
+  if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= first) return;
   const auto batches = static_cast<int>(
       std::min<std::uint64_t>((total - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
   const Duplicates duplicates(world);
-  const int done = rowsUntilStopped(batches, threads, progress, [&](int batch, int) {
-    Tracer tracer(world, texels, duplicates, state.flux);
+  const int done = rowsUntilStopped(batches, options.threads, progress, [&](int batch, int) {
+    Tracer tracer(world, texels, duplicates, state);
     const std::uint64_t begin = first + static_cast<std::uint64_t>(batch) * kBatch;
-    for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) tracer.follow(i, seed);
+    for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) {
+      tracer.follow(i, options.seed, i < options.whole);
+    }
   });
   state.emitted = std::min(total, first + static_cast<std::uint64_t>(done) * kBatch);
 }

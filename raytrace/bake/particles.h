@@ -35,36 +35,61 @@ class FluxGrid {
     std::uint64_t squared = 0;  ///< sum of squared luminance weights: the variance of the sum
   };
 
-  FluxGrid(std::size_t texels, int layers) : texels_(texels), cells_(texels * layers) {}
+  FluxGrid(std::size_t texels, int planes) : texels_(texels), cells_(texels * planes) {}
 
   /// Any thread, concurrently. weight = flux / mean particle's flux.
-  void add(std::size_t texel, int layer, const Vec3& weight);
-  Cell& cell(std::size_t texel, int layer) { return cells_[layer * texels_ + texel]; }
-  const Cell& cell(std::size_t texel, int layer) const { return cells_[layer * texels_ + texel]; }
-  std::span<Cell> cells() { return cells_; }  ///< texels of layer 0, then of layer 1
+  void add(std::size_t texel, int plane, const Vec3& weight);
+  Cell& cell(std::size_t texel, int plane) { return cells_[plane * texels_ + texel]; }
+  const Cell& cell(std::size_t texel, int plane) const { return cells_[plane * texels_ + texel]; }
+  std::span<Cell> cells() { return cells_; }  ///< texels of plane 0, then of plane 1, ...
 
  private:
   std::size_t texels_;
   std::vector<Cell> cells_;
 };
 
+/// Whether light can reach a diffuse surface of the scene by specular events alone: some material has a lobe
+/// besides Lambert's.
+bool castsCaustics(const World& world);
+
 /// All that particle tracing has found so far. Sums and the number of finished particles suffice to go on
-/// later: particle i is a function of (i, seed) alone.
+/// later: particle i is a function of (i, seed) alone. `layers`: 0 fronts, 1 backs of double-sided materials.
 struct ParticleState {
-  ParticleState(std::size_t texels, int layers) : flux(texels, layers) {}
+  ParticleState(const World& world, std::size_t texels, int layerCount)
+      : layers(layerCount),
+        caustics(castsCaustics(world)),
+        flux(texels, caustics ? 2 * layerCount : layerCount) {}
+
+  /// Plane of `flux` with what came by way of a diffuse surface.
+  static int indirectPlane(int layer) { return layer; }
+  /// The same by specular events only, at least one. Only where `caustics`.
+  int causticPlane(int layer) const { return layers + layer; }
+
+  int layers;
+  bool caustics;
   FluxGrid flux;
   std::uint64_t emitted = 0;
 };
 
-/// Emits particles [state.emitted, total) and follows them through every BSDF of the tracer with Russian
-/// roulette; at each hit on a side that shows irradiance, deposits the indirect flux in the texel hit: layer
-/// 0 for fronts, 1 for backs of double-sided materials. Deterministic for any `threads` (0 = inline) and any
-/// pauses: when a stop is requested it ends after whole batches, at least one, and state.emitted says how
-/// far.
-void traceParticles(const World& world, const TexelMap& texels, std::uint64_t total, std::uint32_t seed,
-                    int threads, const core::Progress& progress, ParticleState& state);
+struct ParticleOptions {
+  std::uint64_t whole = 0;    ///< particles [0, whole) are followed through all surfaces
+  std::uint64_t caustic = 0;  ///< so many after them only to the first diffuse surface
+  std::uint32_t seed = 1;
+  int threads = 0;  ///< 0 = inline
 
-/// Watts of one mean particle when `emitted` are emitted: what a weight of 1 stands for.
+  std::uint64_t total() const { return whole + caustic; }
+};
+
+/// Emits particles [state.emitted, options.total()) and follows them through every BSDF of the tracer with
+/// Russian roulette; at each hit on a side that shows irradiance, deposits the flux that has met a surface
+/// before in the texel hit: layer 0 for fronts, 1 for backs of double-sided materials. At each surface either
+/// the diffuse lobe or the others are drawn, in proportion to what they reflect, and a direction of those
+/// alone: so both kinds are unbiased by themselves. Deterministic for any `threads` and any pauses: when a
+/// stop is requested it ends after whole batches, at least one, and state.emitted says how far.
+void traceParticles(const World& world, const TexelMap& texels, const ParticleOptions& options,
+                    const core::Progress& progress, ParticleState& state);
+
+/// Watts of one mean particle of a kind when `emitted` are emitted: what a weight of 1 stands for.
 double wattsPerWeight(const World& world, std::uint64_t emitted);
 
 }  // namespace saccade::raytrace

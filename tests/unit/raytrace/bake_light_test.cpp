@@ -206,8 +206,8 @@ TEST(BakeLight, ParticlesCarryTheFluxThatBouncesWithinOnePercent) {
   core::applyCharts(b.scene, atlas.charts);
   const World world(b.scene, plan);
   const TexelMap texels(b.scene, atlas.size);
-  ParticleState state(texels.texelCount(), 1);
-  traceParticles(world, texels, 200000, 1, 2, {}, state);
+  ParticleState state(world, texels.texelCount(), 1);
+  traceParticles(world, texels, {.whole = 200000, .threads = 2}, {}, state);
   double arrived = 0, area = 0;
   for (std::size_t t = 0; t < texels.texelCount(); ++t) {
     arrived += static_cast<double>(state.flux.cell(t, 0).rgb[1]) / FluxGrid::kUnitsPerWeight;
@@ -229,9 +229,9 @@ TEST(BakeLight, Hard20ParticlesBeyondFourThousandMillion) {
     core::applyCharts(b.scene, atlas.charts);
     const World world(b.scene, plan);
     const TexelMap texels(b.scene, atlas.size);
-    ParticleState state(texels.texelCount(), 1);
+    ParticleState state(world, texels.texelCount(), 1);
     state.emitted = before;
-    traceParticles(world, texels, before + 200000, 1, 2, {}, state);
+    traceParticles(world, texels, {.whole = before + 200000, .threads = 2}, {}, state);
     ASSERT_EQ(state.emitted, before + 200000);
     double arrived = 0;
     for (std::size_t t = 0; t < texels.texelCount(); ++t)
