@@ -151,7 +151,7 @@ TEST(BakeGather, TheSameBitsForAnyThreadsAndBlocks) {
   std::vector<DirectEstimate> inParts(s.texels->texelCount());
   const BlockRange all = allBlocks(s.texels->texelCount());
   for (std::size_t block = all.last; block-- > all.first;) {
-    gatherIrradiance(*s.world, *s.texels, 0, {block, block + 1}, light, {.rays = 4, .threads = 3}, {}, {},
+    gatherIrradiance(*s.world, *s.texels, 0, {block, block + 1}, light, {.rays = 4, .threads = 3}, {},
                      inParts);
   }
   for (std::size_t t = 0; t < inOne.size(); ++t) {
