@@ -19,18 +19,24 @@ constexpr float kLargestHalf = 65504;
 constexpr float kDirectConfidence = 0.4f;
 constexpr double kDirectEnough = 40000;  // 0.5 % noise
 constexpr int kDirectMaxRadius = 3;      // texels
+// Gathered light is smooth, its rays are few and now and then meet something bright.
+constexpr float kGatherConfidence = 1;
+constexpr int kGatherMaxRadius = 24;    // texels
+constexpr int kGatherPooledRadius = 4;  // texels
 
 struct Preset {
   const char* name;
-  std::uint64_t photons;
+  std::uint64_t photons;  ///< of all kinds
+  int causticShare;       ///< of 256 photons, those that are followed to the first diffuse surface only
   int directSamples;
+  int gatherRays;
 };
-// About 1, 10 and 60 seconds for a Cornell room on two cores.
-constexpr Preset kPresets[] = {{"preview", 1 << 18, 4}, {"medium", 1 << 22, 16}, {"high", 1 << 25, 64}};
+constexpr Preset kPresets[] = {
+    {"preview", 1 << 18, 0, 4, 0}, {"medium", 1 << 20, 192, 16, 8}, {"high", 1 << 23, 240, 64, 32}};
 
 using Clock = std::chrono::steady_clock;
 // Shares of a bake's time, measured in the bundled scenes; only the guess until a stage's own pace is known.
-constexpr double kParticleWeight = 0.6, kDirectWeight = 0.3, kFinishWeight = 0.1;
+constexpr double kParticleWeight = 0.2, kDirectWeight = 0.3, kGatherWeight = 0.45, kFinishWeight = 0.05;
 constexpr std::uint64_t kPaceShare = 50;  // a 50th of a stage is done first, to learn its pace
 
 const Preset& presetOf(const std::string& quality) {
@@ -56,21 +62,40 @@ void storeHalves(const TexelMap& texels, const std::vector<Vec3>& irradiance, co
   }
 }
 
-/// Smoothed direct light of one layer.
-std::vector<DensityEstimate> smoothDirect(const TexelMap& texels,
-                                          const std::vector<DirectEstimate>& estimates, int threads,
-                                          const core::Progress& progress, ProgressShare share) {
-  double watts = 0;
-  const FluxGrid flux = fluxOf(texels, estimates, watts);
+DensityOptions smoothingOfDirect() {
   DensityOptions smoothing;
   smoothing.confidence = kDirectConfidence;
   smoothing.enough = kDirectEnough;
   smoothing.doubt = 0;
   smoothing.maxRadius = kDirectMaxRadius;
+  return smoothing;
+}
+
+DensityOptions smoothingOfGathered() {
+  DensityOptions smoothing;
+  smoothing.confidence = kGatherConfidence;
+  smoothing.doubt = 0;
+  smoothing.maxRadius = kGatherMaxRadius;
+  smoothing.pooledRadius = kGatherPooledRadius;
+  return smoothing;
+}
+
+/// Of one layer.
+std::vector<DensityEstimate> smooth(const TexelMap& texels, const std::vector<DirectEstimate>& estimates,
+                                    DensityOptions smoothing, int threads, const core::Progress& progress) {
+  double watts = 0;
+  const FluxGrid flux = fluxOf(texels, estimates, watts);
   smoothing.threads = threads;
   std::vector<DensityEstimate> out(texels.texelCount());
-  estimateDensity(texels, flux, 0, watts, smoothing, progress, share, out);
+  estimateDensity(texels, flux, 0, watts, smoothing, progress, {}, out);
   return out;
+}
+
+/// The part [from, to] of a progress bar.
+core::Progress part(const core::Progress& whole, double from, double to) {
+  core::Progress p{{}, whole.stop};
+  if (whole.report) p.report = [&whole, from, to](double f) { whole.report(from + (to - from) * f); };
+  return p;
 }
 
 /// As bytes, for checkpoints.
@@ -101,43 +126,73 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
       options_(options),
       texels_(world.scene(), atlasSize),
       layers_(texels_.anyDoubleSided() ? 2 : 1),
+      gatherRays_(presetOf(options.quality).gatherRays),
       particles_(world, texels_.texelCount(), layers_),
       direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())) {
-  if (options_.photons == 0) options_.photons = presetOf(options.quality).photons;
-  addStages();
+  const Preset& preset = presetOf(options.quality);
+  if (options_.photons == 0) options_.photons = preset.photons;
+  const auto share = static_cast<std::uint64_t>(preset.causticShare);
+  tracing_.caustic = options_.photons / 256 * share + options_.photons % 256 * share / 256;
+  tracing_.whole = options_.photons - tracing_.caustic;
+  tracing_.seed = options_.seed;
+  tracing_.threads = options_.threads;
+  if (!particles_.caustics) tracing_.caustic = 0;
+  if (gatherRays_ > 0) gathered_ = direct_;
+  addParticles();
+  for (int layer = 0; layer < layers_; ++layer) addDirect(layer);
+  for (int layer = 0; layer < layers_ && gatherRays_ > 0; ++layer) addGather(layer);
 }
 
-void BakeJob::addStages() {
-  const Preset& preset = presetOf(options_.quality);
-  BakeStage particles;
-  particles.name = "particles";
-  particles.units = world_.lights().empty() || !(world_.lights().totalPower() > 0) ? 0 : options_.photons;
-  particles.weight = kParticleWeight;
-  particles.results = bytesOf(particles_.flux.cells());
-  particles.work = [this](std::uint64_t first, std::uint64_t last, const core::Progress& progress) {
+void BakeJob::addParticles() {
+  BakeStage stage;
+  stage.name = "particles";
+  stage.units = world_.lights().empty() || !(world_.lights().totalPower() > 0) ? 0 : tracing_.total();
+  stage.weight = kParticleWeight;
+  stage.results = bytesOf(particles_.flux.cells());
+  stage.work = [this](std::uint64_t first, std::uint64_t last, const core::Progress& progress) {
     particles_.emitted = first;
-    const ParticleOptions tracing{.whole = last, .seed = options_.seed, .threads = options_.threads};
-    traceParticles(world_, texels_, tracing, progress, particles_);
+    traceParticles(world_, texels_, tracing_, last, progress, particles_);
     return particles_.emitted;
   };
-  stages_.push_back(std::move(particles));
-  for (int layer = 0; layer < layers_; ++layer) {
-    DirectOptions direct;
-    direct.samples = preset.directSamples;
-    direct.seed = options_.seed;
-    direct.threads = options_.threads;
-    BakeStage stage;
-    stage.name = layer == 0 ? "direct light" : "direct light on backs";
-    stage.units = allBlocks(texels_.texelCount()).last;
-    stage.weight = kDirectWeight / layers_;
-    const std::span<DirectEstimate> out(direct_[static_cast<std::size_t>(layer)]);
-    stage.results = bytesOf(out);
-    stage.work = [this, layer, direct, out](std::uint64_t first, std::uint64_t last,
-                                            const core::Progress& progress) -> std::uint64_t {
-      return directIrradiance(world_, texels_, layer, {first, last}, direct, progress, out);
-    };
-    stages_.push_back(std::move(stage));
-  }
+  stages_.push_back(std::move(stage));
+}
+
+void BakeJob::addDirect(int layer) {
+  DirectOptions direct;
+  direct.samples = presetOf(options_.quality).directSamples;
+  direct.seed = options_.seed;
+  direct.threads = options_.threads;
+  BakeStage stage;
+  stage.name = layer == 0 ? "direct light" : "direct light on backs";
+  stage.units = allBlocks(texels_.texelCount()).last;
+  stage.weight = kDirectWeight / layers_;
+  const std::span<DirectEstimate> out(direct_[static_cast<std::size_t>(layer)]);
+  stage.results = bytesOf(out);
+  stage.work = [this, layer, direct, out](std::uint64_t first, std::uint64_t last,
+                                          const core::Progress& progress) -> std::uint64_t {
+    return directIrradiance(world_, texels_, layer, {first, last}, direct, progress, out);
+  };
+  stages_.push_back(std::move(stage));
+}
+
+void BakeJob::addGather(int layer) {
+  GatherOptions gather;
+  gather.rays = gatherRays_;
+  gather.seed = options_.seed;
+  gather.threads = options_.threads;
+  BakeStage stage;
+  stage.name = layer == 0 ? "final gathering" : "final gathering on backs";
+  stage.units = world_.lights().empty() ? 0 : allBlocks(texels_.texelCount()).last;
+  stage.weight = kGatherWeight / layers_;
+  stage.independent = false;
+  const std::span<DirectEstimate> out(gathered_[static_cast<std::size_t>(layer)]);
+  stage.results = bytesOf(out);
+  stage.work = [this, layer, gather, out](std::uint64_t first, std::uint64_t last,
+                                          const core::Progress& progress) -> std::uint64_t {
+    if (source_.layers[0].empty()) findSource({});
+    return gatherIrradiance(world_, texels_, layer, {first, last}, source_, gather, progress, out);
+  };
+  stages_.push_back(std::move(stage));
 }
 
 bool BakeJob::advance(const std::stop_token& pause, const BakeReport& report) {
@@ -190,22 +245,51 @@ BakeProgress BakeJob::progressAt(const Pace& now, std::string_view stage) {
   return {now.finished >= 1 ? 1.0 : fraction_, left, stage};
 }
 
-std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress) {
-  const std::vector<DensityEstimate> direct =
-      smoothDirect(texels_, direct_[static_cast<std::size_t>(layer)], options_.threads, progress, {0, 0.5});
+std::vector<DensityEstimate> BakeJob::particleLight(int plane, std::uint64_t emitted,
+                                                    const core::Progress& progress) {
   DensityOptions density;
   density.threads = options_.threads;
-  const double watts = wattsPerWeight(world_, stages_.front().done);
-  std::vector<DensityEstimate> indirect(texels_.texelCount()), caustic(texels_.texelCount());
-  estimateDensity(texels_, particles_.flux, ParticleState::indirectPlane(layer), watts, density, progress,
-                  {0.5, 1}, indirect);
-  if (particles_.caustics) {
-    estimateDensity(texels_, particles_.flux, particles_.causticPlane(layer), watts, density,
-                    {{}, progress.stop}, {}, caustic);
+  std::vector<DensityEstimate> out(texels_.texelCount());
+  estimateDensity(texels_, particles_.flux, plane, wattsPerWeight(world_, emitted), density, progress, {},
+                  out);
+  return out;
+}
+
+std::vector<DensityEstimate> BakeJob::causticLight(int layer, const core::Progress& progress) {
+  if (!particles_.caustics) return std::vector<DensityEstimate>(texels_.texelCount());
+  return particleLight(particles_.causticPlane(layer), tracing_.total(), progress);
+}
+
+/// As the particles alone have it.
+std::vector<DensityEstimate> BakeJob::indirectLight(int layer, const core::Progress& progress) {
+  return particleLight(ParticleState::indirectPlane(layer), tracing_.whole, progress);
+}
+
+void BakeJob::findSource(const core::Progress& progress) {
+  for (int layer = 0; layer < layers_; ++layer) {
+    const std::vector<DensityEstimate> indirect = indirectLight(layer, progress),
+                                       caustic = causticLight(layer, progress);
+    const std::vector<DirectEstimate>& direct = direct_[static_cast<std::size_t>(layer)];
+    std::vector<Vec3>& source = source_.layers[layer];
+    source.resize(texels_.texelCount());
+    for (std::size_t i = 0; i < source.size(); ++i)
+      source[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;
+    fillGutters(texels_, source);
   }
+}
+
+std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress) {
+  const auto index = static_cast<std::size_t>(layer);
+  const std::vector<DensityEstimate> direct =
+      smooth(texels_, direct_[index], smoothingOfDirect(), options_.threads, part(progress, 0, 0.3));
+  const std::vector<DensityEstimate> caustic = causticLight(layer, part(progress, 0.3, 0.6));
+  const std::vector<DensityEstimate> indirect = gatherRays_ == 0
+                                                    ? indirectLight(layer, part(progress, 0.6, 1))
+                                                    : smooth(texels_, gathered_[index], smoothingOfGathered(),
+                                                             options_.threads, part(progress, 0.6, 1));
   std::vector<Vec3> irradiance(texels_.texelCount());
   for (std::size_t i = 0; i < irradiance.size(); ++i)
-    irradiance[i] = direct[i].irradiance + indirect[i].irradiance + caustic[i].irradiance;
+    irradiance[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;
   if (options_.imported)
     importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
   fillGutters(texels_, irradiance);

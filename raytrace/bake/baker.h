@@ -1,9 +1,9 @@
 // The illumination maps of a scene (Haber 2001, section 4): direct light by shadow rays per texel, indirect
 // light and caustics by particle tracing with density estimation.
 //
-// A bake is a job of long stages (particles; direct light of each layer), which can pause and go on with the
-// same bits, and a quick end (density estimation, smoothing, gutters, halves), which is done anew when it was
-// interrupted.
+// A bake is a job of long stages (particles; direct light of each layer; at medium and high final gathering
+// of each layer, which looks up what those found), which can pause and go on with the same bits, and a quick
+// end (density estimation, smoothing, gutters, halves), which is done anew when it was interrupted.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,9 @@
 #include "core/maps.h"
 #include "core/progress.h"
 #include "raytrace/bake/bake_stage.h"
+#include "raytrace/bake/density.h"
 #include "raytrace/bake/direct.h"
+#include "raytrace/bake/gather.h"
 #include "raytrace/bake/imported_light.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
@@ -69,18 +71,28 @@ class BakeJob {
  private:
   struct Pace;
 
-  void addStages();
+  void addParticles();
+  void addDirect(int layer);
+  void addGather(int layer);
   /// Works on one stage up to `last`; false when paused.
   bool run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause, const BakeReport& report);
   BakeProgress progressAt(const Pace& now, std::string_view stage);
+  std::vector<DensityEstimate> particleLight(int plane, std::uint64_t emitted,
+                                             const core::Progress& progress);
+  std::vector<DensityEstimate> causticLight(int layer, const core::Progress& progress);
+  std::vector<DensityEstimate> indirectLight(int layer, const core::Progress& progress);
+  void findSource(const core::Progress& progress);
   std::vector<Vec3> finishLayer(int layer, const core::Progress& progress);
 
   const World& world_;
   BakeOptions options_;
   TexelMap texels_;
   int layers_;
+  ParticleOptions tracing_;
+  int gatherRays_;  ///< 0: particles' indirect light is shown as it is
   ParticleState particles_;
-  std::vector<std::vector<DirectEstimate>> direct_;  ///< by layer
+  std::vector<std::vector<DirectEstimate>> direct_, gathered_;  ///< by layer
+  TexelLight source_;                                           ///< what gather rays look up, once found
   std::vector<BakeStage> stages_;
   double fraction_ = 0;  ///< as reported last
 };

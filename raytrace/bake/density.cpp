@@ -77,10 +77,12 @@ class SummedArea {
 std::size_t chooseRadius(const SummedArea& sums, const ChartRect& chart, int x, int y,
                          const DensityOptions& options) {
   const int longest = std::max(chart.x1 - chart.x0, chart.y1 - chart.y0);
+  const WindowSum pool = sums.window(chart, x, y, options.pooledRadius);
   double low = 0, high = core::kInfinity;
   std::size_t best = 0;
   for (std::size_t i = 0; i < kRadii.size() && kRadii[i] <= options.maxRadius; ++i) {
-    const WindowSum sum = sums.window(chart, x, y, kRadii[i]);
+    WindowSum sum = sums.window(chart, x, y, kRadii[i]);
+    if (kRadii[i] < options.pooledRadius) sum.squared = pool.squared * sum.area / pool.area;
     const double mean = sum.luminance() / sum.area;
     // Few or no particles do not pass for certainty.
     const double error = options.confidence * std::sqrt(sum.squared + options.doubt) / sum.area;

@@ -169,20 +169,20 @@ bool castsCaustics(const World& world) {
 }
 
 void traceParticles(const World& world, const TexelMap& texels, const ParticleOptions& options,
-                    const core::Progress& progress, ParticleState& state) {
-  const std::uint64_t first = state.emitted, total = options.whole + (state.caustics ? options.caustic : 0);
-  if (world.lights().empty() || !(world.lights().totalPower() > 0) || total <= first) return;
+                    std::uint64_t last, const core::Progress& progress, ParticleState& state) {
+  const std::uint64_t first = state.emitted;
+  if (world.lights().empty() || !(world.lights().totalPower() > 0) || last <= first) return;
   const auto batches = static_cast<int>(
-      std::min<std::uint64_t>((total - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
+      std::min<std::uint64_t>((last - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
   const Duplicates duplicates(world);
   const int done = rowsUntilStopped(batches, options.threads, progress, [&](int batch, int) {
     Tracer tracer(world, texels, duplicates, state);
     const std::uint64_t begin = first + static_cast<std::uint64_t>(batch) * kBatch;
-    for (std::uint64_t i = begin; i < std::min(begin + kBatch, total); ++i) {
+    for (std::uint64_t i = begin; i < std::min(begin + kBatch, last); ++i) {
       tracer.follow(i, options.seed, i < options.whole);
     }
   });
-  state.emitted = std::min(total, first + static_cast<std::uint64_t>(done) * kBatch);
+  state.emitted = std::min(last, first + static_cast<std::uint64_t>(done) * kBatch);
 }
 
 double wattsPerWeight(const World& world, std::uint64_t emitted) {

@@ -80,14 +80,15 @@ struct ParticleOptions {
   std::uint64_t total() const { return whole + caustic; }
 };
 
-/// Emits particles [state.emitted, options.total()) and follows them through every BSDF of the tracer with
-/// Russian roulette; at each hit on a side that shows irradiance, deposits the flux that has met a surface
-/// before in the texel hit: layer 0 for fronts, 1 for backs of double-sided materials. At each surface either
-/// the diffuse lobe or the others are drawn, in proportion to what they reflect, and a direction of those
-/// alone: so both kinds are unbiased by themselves. Deterministic for any `threads` and any pauses: when a
-/// stop is requested it ends after whole batches, at least one, and state.emitted says how far.
+/// Emits particles [state.emitted, last), last <= options.total(), and follows them through every BSDF of the
+/// tracer with Russian roulette; at each hit on a side that shows irradiance, deposits the flux that has met
+/// a surface before in the texel hit: layer 0 for fronts, 1 for backs of double-sided materials. At each
+/// surface either the diffuse lobe or the others are drawn, in proportion to what they reflect, and a
+/// direction of those alone: so both kinds are unbiased by themselves. Deterministic for any `threads` and
+/// any pauses: when a stop is requested it ends after whole batches, at least one, and state.emitted says how
+/// far.
 void traceParticles(const World& world, const TexelMap& texels, const ParticleOptions& options,
-                    const core::Progress& progress, ParticleState& state);
+                    std::uint64_t last, const core::Progress& progress, ParticleState& state);
 
 /// Watts of one mean particle of a kind when `emitted` are emitted: what a weight of 1 stands for.
 double wattsPerWeight(const World& world, std::uint64_t emitted);

@@ -79,7 +79,7 @@ TEST(BakeParticles, EachKindOfLightArrivesInItsOwnGridWithinOnePercent) {
   // of it, pi L rho / (1 - rho) times the walls' area by way of the walls.
   const Stage s(boxWithWall(Builder::matte(0.5f, Vec3(1)), metal(0)));
   ParticleState state(*s.world, s.texels->texelCount(), 1);
-  traceParticles(*s.world, *s.texels, {.whole = 200000, .threads = 2}, {}, state);
+  traceParticles(*s.world, *s.texels, {.whole = 200000, .threads = 2}, 200000, {}, state);
   EXPECT_NEAR(s.causticWatts(state) / core::kPi, 1, 0.01);
   EXPECT_NEAR(s.indirectWatts(state) / (5 * core::kPi), 1, 0.01);
 }
@@ -87,7 +87,7 @@ TEST(BakeParticles, EachKindOfLightArrivesInItsOwnGridWithinOnePercent) {
 TEST(BakeParticles, ARoughWallCastsWhatItsAlbedoTableSaysWithinOnePercent) {
   const Stage s(boxWithWall(Builder::matte(0.5f, Vec3(1)), metal(0.6f)));
   ParticleState state(*s.world, s.texels->texelCount(), 1);
-  traceParticles(*s.world, *s.texels, {.whole = 0, .caustic = 200000, .threads = 2}, {}, state);
+  traceParticles(*s.world, *s.texels, {.caustic = 200000, .threads = 2}, 200000, {}, state);
   const core::AlbedoPair albedo = core::meanAlbedo(0.6f);
   EXPECT_NEAR(s.causticWatts(state) / core::kPi, albedo.scale + albedo.bias, 0.01);
   EXPECT_EQ(s.indirectWatts(state), 0);
@@ -101,8 +101,8 @@ TEST(BakeParticles, AGlossyFloorSplitsItsLightAsItsLobesDo) {
   glossy.roughness = 0.3f;
   const Stage s(boxWithWall(Builder::matte(0.5f, Vec3(1)), glossy));
   ParticleState whole(*s.world, s.texels->texelCount(), 1), caustic(*s.world, s.texels->texelCount(), 1);
-  traceParticles(*s.world, *s.texels, {.whole = 300000, .threads = 2}, {}, whole);
-  traceParticles(*s.world, *s.texels, {.caustic = 300000, .seed = 2, .threads = 2}, {}, caustic);
+  traceParticles(*s.world, *s.texels, {.whole = 300000, .threads = 2}, 300000, {}, whole);
+  traceParticles(*s.world, *s.texels, {.caustic = 300000, .seed = 2, .threads = 2}, 300000, {}, caustic);
   EXPECT_NEAR(s.causticWatts(caustic) / s.causticWatts(whole), 1, 0.03);
 }
 

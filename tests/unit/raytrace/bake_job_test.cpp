@@ -40,7 +40,7 @@ struct Charted {
 
 BakeOptions small(int threads) {
   BakeOptions o;
-  o.quality = "preview";
+  o.quality = "medium";
   o.photons = 50001;  // the last batch is not a whole one
   o.threads = threads;
   return o;

@@ -207,7 +207,7 @@ TEST(BakeLight, ParticlesCarryTheFluxThatBouncesWithinOnePercent) {
   const World world(b.scene, plan);
   const TexelMap texels(b.scene, atlas.size);
   ParticleState state(world, texels.texelCount(), 1);
-  traceParticles(world, texels, {.whole = 200000, .threads = 2}, {}, state);
+  traceParticles(world, texels, {.whole = 200000, .threads = 2}, 200000, {}, state);
   double arrived = 0, area = 0;
   for (std::size_t t = 0; t < texels.texelCount(); ++t) {
     arrived += static_cast<double>(state.flux.cell(t, 0).rgb[1]) / FluxGrid::kUnitsPerWeight;
@@ -231,7 +231,7 @@ TEST(BakeLight, Hard20ParticlesBeyondFourThousandMillion) {
     const TexelMap texels(b.scene, atlas.size);
     ParticleState state(world, texels.texelCount(), 1);
     state.emitted = before;
-    traceParticles(world, texels, {.whole = before + 200000, .threads = 2}, {}, state);
+    traceParticles(world, texels, {.whole = before + 200000, .threads = 2}, before + 200000, {}, state);
     ASSERT_EQ(state.emitted, before + 200000);
     double arrived = 0;
     for (std::size_t t = 0; t < texels.texelCount(); ++t)
