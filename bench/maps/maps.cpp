@@ -8,6 +8,7 @@
 
 #include "app/cli/console.h"
 #include "app/session/workspace.h"
+#include "bench/maps/beside_cycles.h"
 #include "bench/maps/gathered_maps.h"
 #include "bench/maps/map_error.h"
 #include "bench/maps/point_reference.h"
@@ -25,6 +26,7 @@ constexpr std::size_t kWorstPoints = 32;
 struct Subject {
   std::string file;
   float unitScale = 1;
+  bool besideCycles = false;
 };
 
 /// A bake: a quality, with so many times its particles.
@@ -110,6 +112,8 @@ class MapsOfScene {
     for (const Setting& setting : effort_.settings) bake(setting);
     gather();
     for (const double error : effort_.errors) reportSoonness(error);
+    if (subject_.besideCycles)
+      measureCyclesBake(session_, subject_.file, *opened_->world, reference_, medium_, threads_);
   }
 
  private:
@@ -195,6 +199,7 @@ class MapsOfScene {
     session_.add(record, &watch);
     session_.say("maps: " + name_ + ", " + setting.name() + ": error " + percentOf(error.relative));
     ours_.push_back({spread(seconds).median, error.relative});
+    if (setting.name() == "medium") medium_ = {spread(seconds).median, found};
     mapsFile_ = request.file;
     mapsOptions_ = options;
     writeWorstPoints(folder() / (name_ + "-" + setting.name() + "-worst.csv"), *opened_->world, reference_,
@@ -273,27 +278,33 @@ class MapsOfScene {
   app::SceneOptions mapsOptions_;           ///< of those
   std::filesystem::path mapsFile_;
   std::vector<CurvePoint> ours_, gather_;
+  OurBake medium_;
   LoadWatch watch_;
 };
 
+/// Those of another person's scenes that are not in metres say so; Cycles bakes the room that it has
+/// rendered.
+Subject subjectOf(const std::string& file) {
+  const std::string name = sceneName(file);
+  return {file, name == "conference" ? 0.003f : 1.0f, name == "cornell_glossy"};
+}
+
 std::vector<Subject> subjectsOf(const Session& session) {
-  std::vector<Subject> subjects;
-  for (const std::string& file : session.options().scenes) subjects.push_back({file});
-  if (!subjects.empty()) return subjects;
-  subjects = {{bundledScene("cornell")}};
-  if (session.quick()) return subjects;
-  subjects.push_back({bundledScene("table")});
-  subjects.push_back({bundledScene("gallery")});
-  const auto add = [&](const char* relative, float unitScale) {
-    if (const auto file = sharedFile(relative)) {
-      subjects.push_back({*file, unitScale});
-    } else {
-      session.say(std::string("maps: ") + relative +
-                  " of the shared folder is not here (set SACCADE_SHARED)");
+  std::vector<std::string> files = session.options().scenes;
+  if (files.empty()) files = {bundledScene("cornell")};
+  if (session.options().scenes.empty() && !session.quick()) {
+    files.insert(files.end(), {bundledScene("table"), bundledScene("gallery")});
+    for (const char* relative :
+         {"scenes/conference/conference.obj", "references/cycles/cornell_glossy.glb"}) {
+      const auto file = sharedFile(relative);
+      if (file) files.push_back(*file);
+      if (!file)
+        session.say(std::string("maps: ") + relative +
+                    " of the shared folder is not here (set SACCADE_SHARED)");
     }
-  };
-  add("scenes/conference/conference.obj", 0.003f);
-  add("references/cycles/cornell_glossy.glb", 1);
+  }
+  std::vector<Subject> subjects;
+  for (const std::string& file : files) subjects.push_back(subjectOf(file));
   return subjects;
 }
 

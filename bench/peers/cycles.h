@@ -5,6 +5,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "core/image.h"
 
@@ -31,5 +32,28 @@ CyclesPicture parseCyclesOutput(const std::string& output);
 /// the picture goes to `folder`. Throws core::Error.
 CyclesPicture renderWithCycles(const std::string& scene, int spp, int threads, int seed,
                                const std::filesystem::path& folder, const std::stop_token& stop);
+
+/// Where a bake's light is asked for.
+struct CyclesPoint {
+  std::string object;      ///< its name in the scene
+  core::Vec3 position{0};  ///< in the file's coordinates
+};
+
+struct CyclesBake {
+  double bakeSeconds = 0;    ///< of the bake alone
+  double unwrapSeconds = 0;  ///< of unwrapping, not in bakeSeconds; nor are import and Blender's own start
+  std::vector<core::Vec3>
+      irradiance;  ///< at each point, W/m^2, on the side that the surface's normal points to
+};
+
+/// The seconds in the line of JSON that cycles_bake.py prints, and its file of values. Throws core::Error
+/// where one of them is missing or there is not one value a point.
+CyclesBake parseCyclesBake(const std::string& output, const std::string& values, std::size_t points);
+
+/// Diffuse light, direct and indirect, of the objects that the points name, in one atlas of 512 x 512 texels,
+/// `spp` samples a texel, with the settings that cycles_bake.py says; its files go to `folder`. Throws
+/// core::Error.
+CyclesBake bakeWithCycles(const std::string& scene, const std::vector<CyclesPoint>& points, int spp,
+                          int threads, const std::filesystem::path& folder, const std::stop_token& stop);
 
 }  // namespace saccade::bench

@@ -95,6 +95,17 @@ TEST(Cycles, NoResultIsAnError) {
     EXPECT_THROW(parseCyclesOutput(output), core::Error) << output;
 }
 
+TEST(Cycles, ABakeHasAValueForEachPoint) {
+  const std::string printed = "Blender\n{\"blender\": \"3.4.1\", \"bake_s\": 28.5, \"unwrap_s\": 0.5}\n";
+  const CyclesBake bake = parseCyclesBake(printed, "[[1, 2, 3], [0, 0.5, 0]]", 2);
+  EXPECT_EQ(bake.bakeSeconds, 28.5);
+  EXPECT_EQ(bake.unwrapSeconds, 0.5);
+  EXPECT_EQ(bake.irradiance, (std::vector<core::Vec3>{{1, 2, 3}, {0, 0.5f, 0}}));
+  for (const char* values : {"", "[[1, 2, 3]]", "[[1, 2], [3, 4]]", "[1, 2]", "{}"})
+    EXPECT_THROW(parseCyclesBake(printed, values, 2), core::Error) << values;
+  EXPECT_THROW(parseCyclesBake("Blender quit\n", "[[1, 2, 3], [0, 0.5, 0]]", 2), core::Error);
+}
+
 TEST(ErrorWithoutNoise, NeverFallsBelowATenthOfTheReferencesOwn) {
   core::Comparison measured;
   measured.relmse = 0.012;
