@@ -8,6 +8,7 @@
 
 #include "app/cli/console.h"
 #include "app/session/workspace.h"
+#include "bench/maps/bake_rates.h"
 #include "bench/maps/beside_cycles.h"
 #include "bench/maps/gathered_maps.h"
 #include "bench/maps/map_error.h"
@@ -27,6 +28,7 @@ struct Subject {
   std::string file;
   float unitScale = 1;
   bool besideCycles = false;
+  bool rates = false;  ///< a small, a middling and a large scene say enough
 };
 
 /// A bake: a quality, with so many times its particles.
@@ -112,6 +114,7 @@ class MapsOfScene {
     for (const Setting& setting : effort_.settings) bake(setting);
     gather();
     for (const double error : effort_.errors) reportSoonness(error);
+    if (subject_.rates) measureBakeRates(session_, name_, *opened_);
     if (subject_.besideCycles)
       measureCyclesBake(session_, subject_.file, *opened_->world, reference_, medium_, threads_);
   }
@@ -286,7 +289,8 @@ class MapsOfScene {
 /// rendered.
 Subject subjectOf(const std::string& file) {
   const std::string name = sceneName(file);
-  return {file, name == "conference" ? 0.003f : 1.0f, name == "cornell_glossy"};
+  return {file, name == "conference" ? 0.003f : 1.0f, name == "cornell_glossy",
+          name == "cornell" || name == "gallery" || name == "conference"};
 }
 
 std::vector<Subject> subjectsOf(const Session& session) {

@@ -205,8 +205,9 @@ std::size_t directIrradiance(const World& world, const TexelMap& texels, int lay
     const std::int32_t chart = texels.chartOf(texel);
     if (chart < 0 || !(texels.area(texel) > 0)) return;
     if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;
-    RayCounters counters;
-    out[texel] = integrateTexel(world, texels, texel, layer, options, counters);
+    RayCounters own;
+    out[texel] =
+        integrateTexel(world, texels, texel, layer, options, options.counters ? *options.counters : own);
   });
 }
 

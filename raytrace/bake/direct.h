@@ -16,7 +16,8 @@ struct DirectOptions {
   int refinement = 4;  ///< times as many samples where the first ones disagree (penumbrae, shadow edges)
   float relativeError = 0.02f;  ///< standard error of the mean above which a texel is refined
   std::uint32_t seed = 1;
-  int threads = 0;  ///< 0 = inline
+  int threads = 0;                  ///< 0 = inline
+  RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 };
 
 struct DirectEstimate {

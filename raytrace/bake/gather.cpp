@@ -105,7 +105,8 @@ class Gatherer {
 
 DirectEstimate gatherTexel(const World& world, const TexelMap& texels, std::size_t texel, int layer,
                            const TexelLight& source, const GatherOptions& options) {
-  RayCounters counters;
+  RayCounters own;
+  RayCounters& counters = options.counters ? *options.counters : own;
   const auto size = static_cast<std::size_t>(texels.size());
   const std::uint64_t first =
       mortonOf(static_cast<std::uint32_t>(texel % size), static_cast<std::uint32_t>(texel / size)) *

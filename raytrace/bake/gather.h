@@ -31,7 +31,8 @@ struct TexelLight {
 struct GatherOptions {
   int rays = 16;  ///< per texel and side; a power of two spreads them best over neighbouring texels
   std::uint32_t seed = 1;
-  int threads = 0;  ///< 0 = inline
+  int threads = 0;                  ///< 0 = inline
+  RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 };
 
 /// For the texels of `blocks`: out[texel] = mean over the texel's covered area of the light that diffuse

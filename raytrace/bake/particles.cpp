@@ -22,12 +22,14 @@ constexpr float kMaxNormalRatio = 4;  // bound on cos(shading) / cos(geometric) 
 /// Follows one particle at a time; one per thread.
 class Tracer {
  public:
-  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, ParticleState& state)
+  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, ParticleState& state,
+         RayCounters& counters)
       : world_(world),
         texels_(texels),
         duplicates_(duplicates),
         state_(state),
-        perWatt_(static_cast<float>(1 / world.lights().totalPower())) {}
+        perWatt_(static_cast<float>(1 / world.lights().totalPower())),
+        counters_(counters) {}
 
   /// `whole`: beyond the first diffuse surface.
   void follow(std::uint64_t index, std::uint32_t seed, bool whole) {
@@ -142,7 +144,7 @@ class Tracer {
   float perWatt_;
   bool diffuse_ = false;  ///< the present particle has met a diffuse lobe
   int channel_ = -1;      ///< the only one that it still has, from the first solid that splits light
-  RayCounters counters_;
+  RayCounters& counters_;
 };
 
 }  // namespace
@@ -176,7 +178,8 @@ void traceParticles(const World& world, const TexelMap& texels, const ParticleOp
       std::min<std::uint64_t>((last - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
   const Duplicates duplicates(world);
   const int done = rowsUntilStopped(batches, options.threads, progress, [&](int batch, int) {
-    Tracer tracer(world, texels, duplicates, state);
+    RayCounters own;
+    Tracer tracer(world, texels, duplicates, state, options.counters ? *options.counters : own);
     const std::uint64_t begin = first + static_cast<std::uint64_t>(batch) * kBatch;
     for (std::uint64_t i = begin; i < std::min(begin + kBatch, last); ++i) {
       tracer.follow(i, options.seed, i < options.whole);

@@ -75,7 +75,8 @@ struct ParticleOptions {
   std::uint64_t whole = 0;    ///< particles [0, whole) are followed through all surfaces
   std::uint64_t caustic = 0;  ///< so many after them only to the first diffuse surface
   std::uint32_t seed = 1;
-  int threads = 0;  ///< 0 = inline
+  int threads = 0;                  ///< 0 = inline
+  RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 
   std::uint64_t total() const { return whole + caustic; }
 };
