@@ -57,7 +57,7 @@ class Stages {
                options.whole = kParticles;
                options.seed = seed_;
                options.counters = &counters;
-               raytrace::traceParticles(world_, texels_, options, {}, particles_);
+               raytrace::traceParticles(world_, texels_, options, kParticles, {}, particles_);
              }},
             {"direct", "texels", texels,
              [this](raytrace::RayCounters& counters) {
