@@ -1,4 +1,4 @@
-// Binary glTF 2.0, written by hand: the format is small, and the same input gives the same bytes.
+// The bundled scenes as binary glTF 2.0, over core::GlbBuilder.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 
 #include "core/camera.h"
 #include "core/image.h"
+#include "core/scene/glb_builder.h"
 #include "core/scene/scene.h"
 #include "data/make_scenes/mesh_data.h"
 
@@ -59,28 +60,12 @@ class GlbWriter {
   std::vector<std::uint8_t> bytes() const;
 
  private:
-  /// One buffer view, shared by all accessors of one kind.
-  struct Stream {
-    std::vector<std::uint8_t> data;
-    int stride = 0;  ///< bytes, 0 = not stated
-    int target = 0;  ///< ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER or 0
-  };
-  enum StreamKind { kPositions, kNormals, kUvs, kTangents, kShortIndices, kLongIndices, kStreamKinds };
+  int addImage(const std::string& name, std::vector<std::uint8_t> file, const char* mimeType);
 
-  int addAccessor(StreamKind kind, const char* type, int componentType, std::size_t count, const void* data,
-                  std::size_t byteCount);
-  int addIndices(const MeshData& mesh);
-  int addImage(const std::string& name, const std::vector<std::uint8_t>& file, const char* mimeType);
-  nlohmann::json withBufferViews(std::vector<std::uint8_t>& binary) const;
-
-  Stream streams_[kStreamKinds]{{{}, 12, 34962}, {{}, 12, 34962}, {{}, 8, 34962},
-                                {{}, 16, 34962}, {{}, 0, 34963},  {{}, 0, 34963}};
-  std::vector<std::vector<std::uint8_t>> imageFiles_;
+  core::GlbBuilder glb_;
   std::vector<bool> isTextured_, isBumpy_;     ///< by material
   std::vector<nlohmann::json> primitives_;     ///< by geometry, without material
   std::map<std::pair<int, int>, int> meshes_;  ///< (geometry, material) -> mesh
-  std::map<std::string, bool> extensionsUsed_;
-  nlohmann::json root_ = nlohmann::json::object();
 };
 
 }  // namespace saccade::data
