@@ -6,6 +6,7 @@
 #include "app/cli/options.h"
 #include "app/commands.h"
 #include "app/session/headless.h"
+#include "app/session/light_export.h"
 #include "app/session/workspace.h"
 
 namespace saccade::app {
@@ -18,21 +19,27 @@ struct BakeOptions {
   std::string output;
   std::string importFolder;
   float importScale = 1;
+  std::string exportFile;
+
+  /// An export alone takes the maps that are there.
+  bool mustBake() const { return exportFile.empty() || !output.empty() || !importFolder.empty(); }
 };
 
 int bake(const BakeOptions& o) {
   const auto start = std::chrono::steady_clock::now();
+  if (!o.exportFile.empty()) checkExport(o.exportFile, o.scene.path);
   BakeRequest request{.file = o.output,
-                      .always = true,
+                      .always = o.mustBake(),
                       .threads = tracerThreads(o.run),
                       .seed = o.run.seed,
                       .importFolder = o.importFolder,
                       .importScale = o.importScale};
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
-  std::printf("%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(),
-              workspace->maps.width, workspace->maps.height, workspace->maps.layers,
-              workspace->maps.layers == 1 ? "" : "s",
+  if (!o.exportFile.empty()) exportLit(*workspace, o.exportFile, tracerThreads(o.run), interruptToken());
+  std::printf("%s%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(),
+              workspace->mapsWereThere ? " (already there, not baked again)" : "", workspace->maps.width,
+              workspace->maps.height, workspace->maps.layers, workspace->maps.layers == 1 ? "" : "s",
               static_cast<unsigned long long>(workspace->maps.photons), workspace->maps.quality.c_str(),
               millisecondsSince(start) / 1000);
   return 0;
@@ -50,11 +57,16 @@ void addBakeCommand(CLI::App& program, Run& run) {
   command->add_option(
       "--import", o->importFolder,
       "Folder of another program's lightmaps, NODE.lightmap.jpg (or .png, .hdr, .exr): nodes of that name "
-      "take their light from it, through their second UV set; the rest is baked");
+      "take their light from it, through their second UV set; or one such image, for all nodes that have the "
+      "set; the rest is baked");
   command
       ->add_option("--import-scale", o->importScale,
                    "Multiplies imported light: irradiance = pi x value x this; 8-bit values are sRGB")
       ->capture_default_str();
+  command->add_option(
+      "--export", o->exportFile,
+      "Also write the lit scene as FILE.glb for Blender, three.js and others, with its irradiance "
+      "in FILE.exr beside it (docs/lightmaps.md); alone it takes maps that are already there");
   addRunOptions(*command, o->run);
   command->callback([o, &run] { run = [o] { return bake(*o); }; });
 }

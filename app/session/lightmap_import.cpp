@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "core/atomic_file.h"
@@ -50,7 +51,8 @@ std::map<std::string, std::vector<fs::path>> imagesByNode(const fs::path& folder
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
     if (isImage(at->path()) && at->is_regular_file()) out[nodeNameOf(at->path())].push_back(at->path());
   if (failed)
-    throw core::Error(folder.string() + ": " + failed.message() + "; --import takes a folder of images");
+    throw core::Error(folder.string() + ": " + failed.message() +
+                      "; --import takes a folder of images, or one image");
   return out;
 }
 
@@ -86,17 +88,18 @@ core::ImageRgb readIrradiance(const fs::path& file, float scale, core::LoadBudge
   return out;
 }
 
-/// Objects of the nodes called `name` that show light, by whether their meshes have a place for it.
+/// Objects that show light, by whether their meshes have a place for it: of the nodes called `name`, or all.
 struct Takers {
   bool named = false;
   std::vector<std::size_t> able, unable;
 };
-Takers takersOf(const core::Scene& scene, const std::string& name) {
+Takers takersOf(const core::Scene& scene, const std::optional<std::string>& name) {
   Takers out;
   for (const core::Node& node : scene.nodes) out.named = out.named || node.name == name;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const core::Object& object = scene.objects[o];
-    if (object.node < 0 || scene.nodes[static_cast<std::size_t>(object.node)].name != name) continue;
+    const bool ofNode = object.node >= 0 && scene.nodes[static_cast<std::size_t>(object.node)].name == name;
+    if (name && !ofNode) continue;
     if (!raytrace::showsIrradiance(scene.materials[static_cast<std::size_t>(object.material)])) continue;
     (raytrace::hasLightmapUv(scene.meshOf(object)) ? out.able : out.unable).push_back(o);
   }
@@ -114,6 +117,21 @@ void reportBaked(const core::Scene& scene, const raytrace::ImportedLight& import
   report.baked.assign(names.begin(), names.end());
 }
 
+/// One image for all of the scene.
+void readAtlas(const fs::path& file, const core::Scene& scene, float scale, core::LoadBudget& budget,
+               raytrace::ImportedLight& out, LightmapReport& report) {
+  const Takers takers = takersOf(scene, std::nullopt);
+  if (takers.able.empty())
+    throw core::Error(file.string() + ": no node of the scene has a second UV set to place it by");
+  if (!takers.unable.empty())
+    report.warnings.push_back(
+        fmt::format("{} objects have no second UV set; they are baked", takers.unable.size()));
+  out.images.push_back(readIrradiance(file, scale, budget));
+  for (const std::size_t o : takers.able) out.imageOfObject[o] = 0;
+  report.taken.push_back(fmt::format("{} ({}x{}): {} objects", file.filename().string(),
+                                     out.images[0].width(), out.images[0].height(), takers.able.size()));
+}
+
 }  // namespace
 
 raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene& scene, float scale,
@@ -123,6 +141,11 @@ raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene&
     throw core::UsageError("--import-scale must be a positive number");
   raytrace::ImportedLight out;
   out.imageOfObject.assign(scene.objects.size(), -1);
+  if (std::error_code ignored; isImage(folder) && fs::is_regular_file(folder, ignored)) {
+    readAtlas(folder, scene, scale, budget, out, report);
+    reportBaked(scene, out, report);
+    return out;
+  }
   std::size_t strangers = 0;
   for (const auto& [name, files] : imagesByNode(folder)) {
     const Takers takers = takersOf(scene, name);

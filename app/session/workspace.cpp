@@ -126,6 +126,7 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     core::applyCharts(w->scene, found->charts);
     w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
     w->maps = std::move(*found);
+    w->mapsWereThere = true;
   } else {
     if (!bake.always)
       spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,

@@ -19,6 +19,7 @@ struct Workspace {
   core::Scene scene;  ///< charted
   core::Plan plan;
   core::IlluminationMaps maps;
+  bool mapsWereThere = false;  ///< read from a file, not baked
   std::unique_ptr<raytrace::World> world;
 
   Workspace() = default;

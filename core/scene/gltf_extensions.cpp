@@ -39,6 +39,12 @@ constexpr std::array kSpecularGlossiness = {numbers("diffuseFactor", 4).in(0, 1)
                                             texture("diffuseTexture"), color("specularFactor"),
                                             factor("glossinessFactor"), texture("specularGlossinessTexture")};
 
+/// What export_gltf.h writes. The first is not read: the maps have all of it.
+constexpr std::array kLightmap = {index("index", "textures").must(), kTexCoord,
+                                  number("intensity").atLeast(0).mend(kMaterialFactors)};
+constexpr std::array kOwnEmission = {numbers("emissiveFactor", 3).atLeast(0).mend(kMaterialFactors),
+                                     texture("emissiveTexture")};
+
 constexpr ExtensionRule kAtMaterial[] = {{"KHR_materials_anisotropy", {kAnisotropy}},
                                          {"KHR_materials_clearcoat", {kClearcoat}},
                                          {"KHR_materials_dispersion", {kDispersion}},
@@ -50,7 +56,9 @@ constexpr ExtensionRule kAtMaterial[] = {{"KHR_materials_anisotropy", {kAnisotro
                                          {"KHR_materials_specular", {kSpecular}},
                                          {"KHR_materials_transmission", {kTransmission}},
                                          {"KHR_materials_unlit", {}},
-                                         {"KHR_materials_volume", {kVolume}}};
+                                         {"KHR_materials_volume", {kVolume}},
+                                         {"MOZ_lightmap", {kLightmap}},
+                                         {"SACCADE_emission", {kOwnEmission}}};
 
 // ---- textures
 

@@ -29,7 +29,9 @@ constexpr std::array kSupportedExtensions = {"KHR_lights_punctual",
                                              "KHR_materials_unlit",
                                              "KHR_materials_volume",
                                              "KHR_mesh_quantization",
-                                             "KHR_texture_transform"};
+                                             "KHR_texture_transform",
+                                             "MOZ_lightmap",
+                                             "SACCADE_emission"};
 
 /// What one value of JSON becomes: in our tree, in the checked copy, in tinygltf's tree and model.
 constexpr std::uint64_t kBytesPerJsonValue = 250;

@@ -55,6 +55,12 @@ void emissiveStrength(const Value& e, MaterialContext&, Material& m) {
   m.emission *= numberOr(e, "emissiveStrength", 1);
 }
 
+/// Of a file that we exported: its emissiveTexture holds all light that leaves.
+void ownEmission(const Value& e, MaterialContext& c, Material& m) {
+  m.emission = vectorOr(e, "emissiveFactor", Vec3(0));
+  m.emissionTexture = c.textures.slot(e, "emissiveTexture", true);
+}
+
 void volume(const Value& e, MaterialContext& c, Material& m) {
   m.thinWalled = numberOr(e, "thicknessFactor", 0) == 0;
   m.attenuationColor = vectorOr(e, "attenuationColor", Vec3(1));
@@ -119,7 +125,8 @@ constexpr Extension kExtensions[] = {{"KHR_materials_pbrSpecularGlossiness", &sp
                                      {"KHR_materials_sheen", &sheen},
                                      {"KHR_materials_iridescence", &iridescence},
                                      {"KHR_materials_dispersion", &dispersion},
-                                     {"KHR_materials_unlit", &unlit}};
+                                     {"KHR_materials_unlit", &unlit},
+                                     {kOwnEmissionExtension, &ownEmission}};
 
 /// The members of Ward's lobe, which the gate does not know: their form is checked here, their range mended.
 class WardReader {

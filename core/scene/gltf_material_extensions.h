@@ -16,8 +16,12 @@ struct MaterialContext {
   float unitScale = 1;  ///< metres per unit of the file
 };
 
+/// The material's emission in a file of core/scene/export_gltf.h, strength multiplied in; takes the place of
+/// emissiveFactor and emissiveTexture.
+inline constexpr const char* kOwnEmissionExtension = "SACCADE_emission";
+
 /// Applies KHR_materials_clearcoat, _anisotropy, _dispersion, _emissive_strength, _ior, _iridescence,
-/// _pbrSpecularGlossiness, _sheen, _specular, _transmission, _unlit and _volume to a material whose core
+/// _pbrSpecularGlossiness, _sheen, _specular, _transmission, _unlit, _volume and SACCADE_emission to a material whose core
 /// fields are filled. The gate has checked them.
 ///
 /// _pbrSpecularGlossiness takes the place of pbrMetallicRoughness: metallic 0, baseColor = diffuse, F0 =

@@ -35,7 +35,8 @@ Material coreMaterial(const tinygltf::Material& from, MaterialContext& c) {
   if (from.emissiveFactor.size() == 3)
     for (int i = 0; i < 3; ++i)
       m.emission[i] = static_cast<float>(from.emissiveFactor[static_cast<std::size_t>(i)]);
-  m.emissionTexture = c.textures.slot(from.emissiveTexture, true);
+  if (!from.extensions.contains(kOwnEmissionExtension))
+    m.emissionTexture = c.textures.slot(from.emissiveTexture, true);
   if (from.alphaMode == "MASK") m.alphaMode = AlphaMode::mask;
   if (from.alphaMode == "BLEND") m.alphaMode = AlphaMode::blend;
   m.alphaCutoff = static_cast<float>(from.alphaCutoff);

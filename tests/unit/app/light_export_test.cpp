@@ -1,0 +1,155 @@
+// bake --export: the light in the files, and the way back through --import.
+#include "app/session/light_export.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/image_io.h"
+#include "core/math/half.h"
+#include "core/scene/load.h"
+#include "core/srgb8.h"
+#include "raytrace/bake/gutters.h"
+#include "raytrace/bake/light_textures.h"
+#include "raytrace/bake/texel_map.h"
+#include "raytrace/surface.h"
+#include "raytrace/surface_points.h"
+#include "tests/command_line.h"
+#include "tests/unit/app/fixtures.h"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Vec3;
+
+/// Irradiance that any map of our scenes holds well: linear in the world.
+Vec3 smoothLight(const Vec3& p) { return Vec3(4 + p.x, 3 + 0.5f * p.y, 5 - p.z); }
+
+Vec3 positionOf(const raytrace::World& world, const raytrace::MeshPoint& p) {
+  const Vec3* corner = world.shape(world.firstTriangle(p.object) + p.triangle).position;
+  const Vec3 local = corner[0] * (1 - p.b1 - p.b2) + corner[1] * p.b1 + corner[2] * p.b2;
+  return Vec3(world.scene().objects[p.object].meshToWorld * core::Vec4(local, 1));
+}
+
+/// Takes the place of what was baked, on both sides.
+void lightSmoothly(app::Workspace& w) {
+  const raytrace::TexelMap texels(w.scene, w.maps.width);
+  std::vector<Vec3> light(texels.texelCount());
+  constexpr int kPoints = 16;
+  for (std::size_t i = 0; i < light.size(); ++i)
+    for (int k = 0; k < kPoints && texels.chartOf(i) >= 0; ++k)
+      light[i] += smoothLight(positionOf(*w.world, texels.pointOn(i, (static_cast<float>(k) + 0.5f) / kPoints,
+                                                                  static_cast<float>(k % 4) / 4 + 0.125f,
+                                                                  static_cast<float>(k / 4) / 4 + 0.125f))) /
+                  static_cast<float>(kPoints);
+  raytrace::fillGutters(texels, light);
+  for (std::size_t at = 0; at < w.maps.texels.size(); ++at)
+    w.maps.texels[at] = core::toHalf(light[at / 3 % light.size()][static_cast<int>(at % 3)]);
+  w.world->setMaps(&w.maps);
+}
+
+std::unique_ptr<app::Workspace> opened(const fs::path& scene, const fs::path& importFile = {}) {
+  app::SceneOptions options;
+  options.path = scene.string();
+  options.quality = "preview";
+  options.photons = 1000;
+  app::BakeRequest bake;
+  bake.file = tests::temporaryFolder() / (scene.stem().string() + "-export.maps");
+  bake.threads = 2;
+  bake.importFolder = importFile;
+  bake.importScale = 1 / core::kPi;
+  return app::openWorkspace(options, bake, {});
+}
+
+double error(const raytrace::World& world, const raytrace::SurfacePoint& p) {
+  const Vec3 truth = smoothLight(positionOf(world, {p.object, p.triangle, p.b1, p.b2}));
+  return glm::length(raytrace::mapIrradiance(world, p) - truth) / glm::length(truth);
+}
+
+TEST(LightExport, TheLightComesBackThroughImport) {
+  const auto from = opened(tests::bundled("cornell.glb"));
+  lightSmoothly(*from);
+  const fs::path file = tests::temporaryFolder() / "round.glb";
+  app::exportLit(*from, file, 2, {});
+  const auto to = opened(file, app::LitFiles(file).front);
+  EXPECT_EQ(to->scene.warnings, core::Warnings{});
+  EXPECT_EQ(from->scene.triangleCount(), to->scene.triangleCount());
+  EXPECT_LT(glm::length(from->scene.bounds.lo - to->scene.bounds.lo), 1e-5f);
+  EXPECT_LT(glm::length(from->scene.bounds.hi - to->scene.bounds.hi), 1e-5f);
+  double squares = 0;
+  const auto points = raytrace::surfacePoints(*to->world, 4096, 1);
+  for (const raytrace::SurfacePoint& p : points) squares += std::pow(error(*to->world, p), 2);
+  // Half floats leave 0.0005; where a chart's border cuts a texel, each of the two maps moves its light by up
+  // to half a texel of 1 cm, across which the light changes by 0.001.
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(points.size())), 0.002);
+}
+
+TEST(LightExport, TexturesHoldIrradianceAndWhatTheBaseLayerShows) {
+  const app::Workspace& w = tests::workspaceOf(tests::bundled("cornell.glb"));
+  const core::LightTextures light = raytrace::makeLightTextures(*w.world, w.maps, 2, {});
+  const raytrace::TexelMap texels(w.scene, w.maps.width);
+  ASSERT_EQ(light.emission.width(), w.maps.width);  // nothing is textured
+  const core::Srgb8& code = core::Srgb8::table();
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < texels.texelCount(); i += 7) {
+    if (texels.chartOf(i) < 0) continue;
+    ++seen;
+    const int x = static_cast<int>(i) % w.maps.width, y = static_cast<int>(i) / w.maps.width;
+    const core::Object& object = w.scene.objects[texels.fragments(i).front().object];
+    const auto material = static_cast<std::size_t>(object.material);
+    const core::MaterialLight scale = light.materials[material];
+    const Vec3 front = w.maps.texel(x, y, 0) / core::kPi, back = w.maps.texel(x, y, 1) / core::kPi;
+    const Vec3 albedo =
+        w.scene.materials[material].baseColor * w.world->material(object.material).diffuseFactor;
+    const core::Rgba8 shown = light.lightmap.at(x, y), left = light.emission.at(x, y);
+    // The same side in both; the centre of the mean differs where a border cuts the texel.
+    const bool isFront =
+        shown == core::Rgba8{code(front.x / scale.irradiance), code(front.y / scale.irradiance),
+                             code(front.z / scale.irradiance), 255};
+    const Vec3 side = isFront ? front : back;
+    EXPECT_EQ(shown.g, code(side.y / scale.irradiance)) << x << ' ' << y;
+    const Vec3 radiance = w.scene.materials[material].emission + albedo * side;
+    if (texels.area(i) == 0 || texels.fragments(i).size() > 2) continue;
+    EXPECT_LE(std::abs(left.g - code(radiance.y / scale.radiance)), 24) << x << ' ' << y;
+  }
+  EXPECT_GT(seen, 10000u);
+}
+
+TEST(LightExport, TheCommandExportsWithoutBakingTwice) {
+  const fs::path scene = tests::temporaryFolder() / "room.glb",
+                 lit = tests::temporaryFolder() / "lit room.glb";
+  fs::copy_file(tests::bundled("cornell.glb"), scene, fs::copy_options::overwrite_existing);
+  const std::string command =
+      "bake '" + scene.string() + "' --quality preview --photons 1000 --export '" + lit.string() + "'";
+  const tests::Ran first = tests::saccade(command);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(first.out.find("already there"), std::string::npos);
+  const app::LitFiles files(lit);
+  EXPECT_TRUE(fs::exists(files.front));
+  EXPECT_TRUE(fs::exists(files.back));
+  const std::string once = tests::slurp(lit);
+  const tests::Ran second = tests::saccade(command + " --threads 0");
+  ASSERT_EQ(second.status, 0) << second.err;
+  EXPECT_NE(second.out.find("already there, not baked again"), std::string::npos);
+  EXPECT_EQ(tests::slurp(lit), once);
+  EXPECT_EQ(core::loadScene(lit, {}).warnings, core::Warnings{});
+}
+
+TEST(LightExport, ErrorsComeBeforeTheBakeInOneLine) {
+  const std::string scene = tests::bundled("cornell.glb").string();
+  const auto fails = [&](const std::string& file, int status, const std::string& why) {
+    const tests::Ran ran = tests::saccade("bake '" + scene + "' --export '" + file + "'");
+    EXPECT_EQ(ran.status, status) << file;
+    EXPECT_EQ(tests::errorLines(ran.err), 1) << ran.err;
+    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    EXPECT_EQ(ran.err.find("baking"), std::string::npos);
+  };
+  fails("room.gltf", 2, "ends in .glb");
+  fails(scene, 2, "overwrite the scene");
+  fails((tests::temporaryFolder() / "no such folder" / "a.glb").string(), 1, "folder that can be written");
+  fails("/proc/a.glb", 1, "folder that can be written");
+}
+
+}  // namespace
+}  // namespace saccade
