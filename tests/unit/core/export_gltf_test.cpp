@@ -19,7 +19,7 @@ namespace {
 using namespace saccade::tests;
 using nlohmann::json;
 
-/// Two unit quads with every attribute; places in the atlas differ from uv0.
+/// Two unit quads with every attribute of a file.
 Mesh quads() {
   Mesh m;
   m.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, -1}, {1, 1, -1}};
@@ -29,7 +29,6 @@ Mesh quads() {
     m.uv0.emplace_back(p.x + 1, p.y);
     m.uv1.emplace_back(p.y, p.z - p.x);
     m.colors.emplace_back(0.5f, p.x, p.y, 1);
-    m.lightmapUv.emplace_back(0.1f + 0.4f * p.x - 0.2f * p.z, 0.1f + 0.3f * p.y);
   }
   m.indices = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
   return m;
@@ -96,7 +95,7 @@ std::vector<Material> manyMaterials() {
   return {plain, all, ward, unlit, second};
 }
 
-/// One object of each material under a turned, stretched and mirrored tree of nodes.
+/// One object of each material under a turned, stretched and mirrored tree of nodes, and the default panel.
 Scene manyThings() {
   Scene scene;
   scene.path = "memory";
@@ -134,6 +133,8 @@ Scene manyThings() {
   camera.fovYDegrees = 40;
   scene.cameras = {camera};
   completeScene(scene, {});
+  for (Mesh& mesh : scene.meshes)
+    for (const Vec3& p : mesh.positions) mesh.lightmapUv.push_back(0.1f + 0.02f * Vec2(p.y, p.x));
   for (std::size_t o = 0; o < scene.objects.size(); ++o)
     scene.objects[o].lightmapScaleOffset = Vec4(0.2f, 0.3f, 0.2f * static_cast<float>(o), 0.5f);
   return scene;
@@ -150,7 +151,8 @@ LightTextures lightOf(const Scene& scene) {
 }
 
 Scene reloaded(const Scene& scene, const std::string& name) {
-  const std::filesystem::path file = temporaryFolder() / name;
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / name;
   writeFileAtomically(file, exportGltf(scene, lightOf(scene)));
   return loadScene(file, {});
 }
@@ -170,7 +172,6 @@ void expectSameSlot(const Scene& a, const TextureSlot& s, const Scene& b, const 
   const Texture &x = a.textures[static_cast<std::size_t>(s.texture)],
                 &y = b.textures[static_cast<std::size_t>(t.texture)];
   EXPECT_EQ(x.image.pixels(), y.image.pixels());
-  EXPECT_EQ(x.name, y.name);
   EXPECT_EQ(std::tuple(x.wrapS, x.wrapT, x.nearest), std::tuple(y.wrapS, y.wrapT, y.nearest));
   EXPECT_EQ(std::tuple(uvSet, s.offset, s.rotation, s.scale),
             std::tuple(t.uvSet, t.offset, t.rotation, t.scale));
@@ -193,12 +194,15 @@ TEST(ExportGltf, MaterialsComeBackWithoutAWarning) {
                         m.doubleSided, m.unlit);
     };
     EXPECT_TRUE(factors(a) == factors(b));
-    if (!a.ward) EXPECT_EQ(a.roughness, b.roughness);
+    if (!a.ward) {
+      EXPECT_EQ(a.roughness, b.roughness);
+    }
     for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(a.emission[c], b.emission[c]);
     ASSERT_EQ(a.ward.has_value(), b.ward.has_value());
-    if (a.ward)
+    if (a.ward) {
       EXPECT_EQ(std::tuple(a.ward->diffuse, a.ward->specular, a.ward->alphaX, a.ward->alphaY),
                 std::tuple(b.ward->diffuse, b.ward->specular, b.ward->alphaX, b.ward->alphaY));
+    }
     for (const auto slot :
          {&Material::baseColorTexture, &Material::metallicRoughnessTexture, &Material::normalTexture,
           &Material::emissionTexture, &Material::specularTexture, &Material::specularColorTexture,
@@ -263,6 +267,7 @@ TEST(ExportGltf, AnInstancedMeshIsStoredOnceButForItsPlacesInTheAtlas) {
   Object again = scene.objects[0];
   again.mesh = static_cast<std::uint32_t>(scene.meshes.size());
   scene.meshes.push_back(quads());
+  scene.meshes.back().lightmapUv = scene.meshes.back().uv0;
   scene.meshes.back().instanced = true;
   again.node = -1;
   again.meshToWorld = Mat4(1);
