@@ -70,10 +70,7 @@ json MaterialExporter::material(const Material& m, const MaterialLight& light) {
   if (!m.name.empty()) out["name"] = m.name;
   addCore(m, out);
   addEmission(m, light, out);
-  if (m.unlit) {
-    extension(out, "KHR_materials_unlit");
-    return out;
-  }
+  if (m.unlit) extension(out, "KHR_materials_unlit");
   if (m.ward) {
     out["extras"]["saccade"]["ward"] = wardExtras(*m.ward);
     return out;
