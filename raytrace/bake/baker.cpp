@@ -36,7 +36,8 @@ constexpr Preset kPresets[] = {
 
 using Clock = std::chrono::steady_clock;
 // Shares of a bake's time, measured in the bundled scenes; only the guess until a stage's own pace is known.
-constexpr double kParticleWeight = 0.2, kDirectWeight = 0.3, kGatherWeight = 0.45, kFinishWeight = 0.05;
+constexpr double kOpenWeight = 0.03, kParticleWeight = 0.2, kDirectWeight = 0.3, kGatherWeight = 0.45,
+                 kFinishWeight = 0.02;
 constexpr std::uint64_t kPaceShare = 50;  // a 50th of a stage is done first, to learn its pace
 
 const Preset& presetOf(const std::string& quality) {
@@ -81,13 +82,14 @@ DensityOptions smoothingOfGathered() {
 }
 
 /// Of one layer.
-std::vector<DensityEstimate> smooth(const TexelMap& texels, const std::vector<DirectEstimate>& estimates,
-                                    DensityOptions smoothing, int threads, const core::Progress& progress) {
+std::vector<DensityEstimate> smooth(const TexelMap& texels, std::span<const float> areas,
+                                    const std::vector<DirectEstimate>& estimates, DensityOptions smoothing,
+                                    int threads, const core::Progress& progress) {
   double watts = 0;
-  const FluxGrid flux = fluxOf(texels, estimates, watts);
+  const FluxGrid flux = fluxOf(areas, estimates, watts);
   smoothing.threads = threads;
   std::vector<DensityEstimate> out(texels.texelCount());
-  estimateDensity(texels, flux, 0, watts, smoothing, progress, {}, out);
+  estimateDensity(texels, areas, flux, 0, watts, smoothing, progress, {}, out);
   return out;
 }
 
@@ -126,6 +128,7 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
       options_(options),
       texels_(world.scene(), atlasSize),
       layers_(texels_.anyDoubleSided() ? 2 : 1),
+      open_(texels_, layers_),
       gatherRays_(presetOf(options.quality).gatherRays),
       particles_(world, texels_.texelCount(), layers_),
       direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())) {
@@ -138,9 +141,23 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
   tracing_.threads = options_.threads;
   if (!particles_.caustics) tracing_.caustic = 0;
   if (gatherRays_ > 0) gathered_ = direct_;
+  for (int layer = 0; layer < layers_; ++layer) addOpenArea(layer);
   addParticles();
   for (int layer = 0; layer < layers_; ++layer) addDirect(layer);
   for (int layer = 0; layer < layers_ && gatherRays_ > 0; ++layer) addGather(layer);
+}
+
+void BakeJob::addOpenArea(int layer) {
+  BakeStage stage;
+  stage.name = layer == 0 ? "open surface" : "open backs";
+  stage.units = allBlocks(texels_.texelCount()).last;
+  stage.weight = kOpenWeight / layers_;
+  stage.results = bytesOf(open_.areas(layer));
+  stage.work = [this, layer](std::uint64_t first, std::uint64_t last,
+                             const core::Progress& progress) -> std::uint64_t {
+    return open_.probe(world_, texels_, layer, {first, last}, options_.threads, progress);
+  };
+  stages_.push_back(std::move(stage));
 }
 
 void BakeJob::addParticles() {
@@ -190,7 +207,7 @@ void BakeJob::addGather(int layer) {
   stage.work = [this, layer, gather, out](std::uint64_t first, std::uint64_t last,
                                           const core::Progress& progress) -> std::uint64_t {
     if (source_.layers[0].empty()) findSource({});
-    return gatherIrradiance(world_, texels_, layer, {first, last}, source_, gather, progress, out);
+    return gatherIrradiance(world_, texels_, open_, layer, {first, last}, source_, gather, progress, out);
   };
   stages_.push_back(std::move(stage));
 }
@@ -245,24 +262,24 @@ BakeProgress BakeJob::progressAt(const Pace& now, std::string_view stage) {
   return {now.finished >= 1 ? 1.0 : fraction_, left, stage};
 }
 
-std::vector<DensityEstimate> BakeJob::particleLight(int plane, std::uint64_t emitted,
+std::vector<DensityEstimate> BakeJob::particleLight(int layer, int plane, std::uint64_t emitted,
                                                     const core::Progress& progress) {
   DensityOptions density;
   density.threads = options_.threads;
   std::vector<DensityEstimate> out(texels_.texelCount());
-  estimateDensity(texels_, particles_.flux, plane, wattsPerWeight(world_, emitted), density, progress, {},
-                  out);
+  estimateDensity(texels_, open_.areas(layer), particles_.flux, plane, wattsPerWeight(world_, emitted),
+                  density, progress, {}, out);
   return out;
 }
 
 std::vector<DensityEstimate> BakeJob::causticLight(int layer, const core::Progress& progress) {
   if (!particles_.caustics) return std::vector<DensityEstimate>(texels_.texelCount());
-  return particleLight(particles_.causticPlane(layer), tracing_.total(), progress);
+  return particleLight(layer, particles_.causticPlane(layer), tracing_.total(), progress);
 }
 
 /// As the particles alone have it.
 std::vector<DensityEstimate> BakeJob::indirectLight(int layer, const core::Progress& progress) {
-  return particleLight(ParticleState::indirectPlane(layer), tracing_.whole, progress);
+  return particleLight(layer, ParticleState::indirectPlane(layer), tracing_.whole, progress);
 }
 
 void BakeJob::findSource(const core::Progress& progress) {
@@ -281,12 +298,13 @@ void BakeJob::findSource(const core::Progress& progress) {
 std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress) {
   const auto index = static_cast<std::size_t>(layer);
   const std::vector<DensityEstimate> direct =
-      smooth(texels_, direct_[index], smoothingOfDirect(), options_.threads, part(progress, 0, 0.3));
+      smooth(texels_, open_.areas(layer), direct_[index], smoothingOfDirect(), options_.threads,
+             part(progress, 0, 0.3));
   const std::vector<DensityEstimate> caustic = causticLight(layer, part(progress, 0.3, 0.6));
-  const std::vector<DensityEstimate> indirect = gatherRays_ == 0
-                                                    ? indirectLight(layer, part(progress, 0.6, 1))
-                                                    : smooth(texels_, gathered_[index], smoothingOfGathered(),
-                                                             options_.threads, part(progress, 0.6, 1));
+  const std::vector<DensityEstimate> indirect =
+      gatherRays_ == 0 ? indirectLight(layer, part(progress, 0.6, 1))
+                       : smooth(texels_, open_.areas(layer), gathered_[index], smoothingOfGathered(),
+                                options_.threads, part(progress, 0.6, 1));
   std::vector<Vec3> irradiance(texels_.texelCount());
   for (std::size_t i = 0; i < irradiance.size(); ++i)
     irradiance[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;

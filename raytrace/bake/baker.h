@@ -21,6 +21,7 @@
 #include "raytrace/bake/direct.h"
 #include "raytrace/bake/gather.h"
 #include "raytrace/bake/imported_light.h"
+#include "raytrace/bake/open_area.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
@@ -71,13 +72,14 @@ class BakeJob {
  private:
   struct Pace;
 
+  void addOpenArea(int layer);
   void addParticles();
   void addDirect(int layer);
   void addGather(int layer);
   /// Works on one stage up to `last`; false when paused.
   bool run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause, const BakeReport& report);
   BakeProgress progressAt(const Pace& now, std::string_view stage);
-  std::vector<DensityEstimate> particleLight(int plane, std::uint64_t emitted,
+  std::vector<DensityEstimate> particleLight(int layer, int plane, std::uint64_t emitted,
                                              const core::Progress& progress);
   std::vector<DensityEstimate> causticLight(int layer, const core::Progress& progress);
   std::vector<DensityEstimate> indirectLight(int layer, const core::Progress& progress);
@@ -88,6 +90,7 @@ class BakeJob {
   BakeOptions options_;
   TexelMap texels_;
   int layers_;
+  OpenArea open_;
   ParticleOptions tracing_;
   int gatherRays_;  ///< 0: particles' indirect light is shown as it is
   ParticleState particles_;

@@ -32,16 +32,18 @@ struct WindowSum {
 /// Sums over any rectangle of one plane in constant time. Flux sums are integers modulo 2^64: exact.
 class SummedArea {
  public:
-  SummedArea(const TexelMap& texels, const FluxGrid& flux, int plane)
-      : stride_(static_cast<std::size_t>(texels.size()) + 1), sums_(stride_ * stride_) {
+  SummedArea(int size, std::span<const float> areas, const FluxGrid& flux, int plane)
+      : stride_(static_cast<std::size_t>(size) + 1), sums_(stride_ * stride_) {
     for (std::size_t y = 1; y < stride_; ++y) {
       Entry row;
       for (std::size_t x = 1; x < stride_; ++x) {
         const std::size_t texel = (y - 1) * (stride_ - 1) + x - 1;
-        const FluxGrid::Cell& cell = flux.cell(texel, plane);
-        for (int c = 0; c < 3; ++c) row.flux[c] += cell.rgb[c];
-        row.flux[3] += cell.squared;
-        row.area += texels.area(texel);
+        if (areas[texel] > 0) {
+          const FluxGrid::Cell& cell = flux.cell(texel, plane);
+          for (int c = 0; c < 3; ++c) row.flux[c] += cell.rgb[c];
+          row.flux[3] += cell.squared;
+          row.area += areas[texel];
+        }
         const Entry& above = sums_[(y - 1) * stride_ + x];
         Entry& here = sums_[y * stride_ + x];
         for (int c = 0; c < 4; ++c) here.flux[c] = row.flux[c] + above.flux[c];
@@ -130,17 +132,16 @@ DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, 
 
 }  // namespace
 
-FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, double& watts) {
+FluxGrid fluxOf(std::span<const float> areas, std::span<const DirectEstimate> direct, double& watts) {
   double total = 0;
-  for (std::size_t i = 0; i < direct.size(); ++i)
-    total += core::luminance(direct[i].irradiance) * texels.area(i);
+  for (std::size_t i = 0; i < direct.size(); ++i) total += core::luminance(direct[i].irradiance) * areas[i];
   // The mean weight is 1, so sums stay below the number of texels.
   watts = total > 0 ? total / static_cast<double>(direct.size()) : 1;
   // Clamped, a sum of squares cannot overflow; too small an error only keeps a window small.
   const double largestSquare = 0x1p33 / static_cast<double>(direct.size());
   FluxGrid flux(direct.size(), 1);
   for (std::size_t i = 0; i < direct.size(); ++i) {
-    const double perWatt = texels.area(i) / watts;
+    const double perWatt = areas[i] / watts;
     FluxGrid::Cell& cell = flux.cell(i, 0);
     for (int c = 0; c < 3; ++c) {
       cell.rgb[c] = static_cast<std::uint64_t>(direct[i].irradiance[c] * perWatt * FluxGrid::kUnitsPerWeight);
@@ -151,10 +152,10 @@ FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, 
   return flux;
 }
 
-void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int plane, double watts,
-                     const DensityOptions& options, const core::Progress& progress, ProgressShare share,
-                     std::span<DensityEstimate> out) {
-  const SummedArea sums(texels, flux, plane);
+void estimateDensity(const TexelMap& texels, std::span<const float> areas, const FluxGrid& flux, int plane,
+                     double watts, const DensityOptions& options, const core::Progress& progress,
+                     ProgressShare share, std::span<DensityEstimate> out) {
+  const SummedArea sums(texels.size(), areas, flux, plane);
   const double middle = 0.5 * (share.from + share.to);
   // The chosen widths are themselves noisy: a texel takes the median of its neighbourhood's.
   std::vector<std::uint8_t> chosen(texels.texelCount(), kNoRadius);
@@ -162,7 +163,7 @@ void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int plane, do
     const int y = static_cast<int>(row);
     for (int x = 0; x < texels.size(); ++x) {
       const std::size_t texel = row * static_cast<std::size_t>(texels.size()) + static_cast<std::size_t>(x);
-      if (texels.chartOf(texel) < 0 || !(texels.area(texel) > 0)) continue;
+      if (texels.chartOf(texel) < 0 || !(areas[texel] > 0)) continue;
       visit(texel, texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))], x, y);
     }
   };

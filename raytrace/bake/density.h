@@ -36,14 +36,14 @@ struct DensityEstimate {
 };
 
 /// Flux that stands for per-texel estimates with errors of their own, so that direct light's noise is
-/// smoothed by the same rule: weight = irradiance x area / `watts` (returned). For estimateDensity with doubt
-/// 0.
-FluxGrid fluxOf(const TexelMap& texels, std::span<const DirectEstimate> direct, double& watts);
+/// smoothed by the same rule: weight = irradiance x area (m^2, by texel) / `watts` (returned). For
+/// estimateDensity with doubt 0.
+FluxGrid fluxOf(std::span<const float> areas, std::span<const DirectEstimate> direct, double& watts);
 
-/// Estimates by one plane of `flux` for all texels with surface; others are left alone. `watts`:
-/// wattsPerWeight. Same bits for any number of threads. Throws core::Error when stopped.
-void estimateDensity(const TexelMap& texels, const FluxGrid& flux, int plane, double watts,
-                     const DensityOptions& options, const core::Progress& progress, ProgressShare share,
-                     std::span<DensityEstimate> out);
+/// Estimates by one plane of `flux` for all texels with `areas` (m^2: OpenArea); others are left alone.
+/// `watts`: wattsPerWeight. Same bits for any number of threads. Throws core::Error when stopped.
+void estimateDensity(const TexelMap& texels, std::span<const float> areas, const FluxGrid& flux, int plane,
+                     double watts, const DensityOptions& options, const core::Progress& progress,
+                     ProgressShare share, std::span<DensityEstimate> out);
 
 }  // namespace saccade::raytrace

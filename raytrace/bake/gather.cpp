@@ -12,6 +12,7 @@ namespace saccade::raytrace {
 namespace {
 
 constexpr int kMaxEvents = 64;                    // surfaces met; a mirror box would not end otherwise
+constexpr int kMostTries = 4;                     // samples drawn for one that is not covered
 constexpr std::uint32_t kGatherStream = 0x6761u;  // keeps the random numbers apart from others'
 
 /// Bits of x and y in turn: neighbouring texels have neighbouring numbers, so that the samples of any patch
@@ -103,8 +104,9 @@ class Gatherer {
   Inside inside_;     ///< kept only where a solid attenuates
 };
 
+/// `covered`: some of it is.
 DirectEstimate gatherTexel(const World& world, const TexelMap& texels, std::size_t texel, int layer,
-                           const TexelLight& source, const GatherOptions& options) {
+                           bool covered, const TexelLight& source, const GatherOptions& options) {
   RayCounters own;
   RayCounters& counters = options.counters ? *options.counters : own;
   const auto size = static_cast<std::size_t>(texels.size());
@@ -113,32 +115,36 @@ DirectEstimate gatherTexel(const World& world, const TexelMap& texels, std::size
       static_cast<std::uint64_t>(options.rays);
   glm::dvec3 sum(0);
   double squares = 0;
-  for (int i = 0; i < options.rays; ++i) {
+  int count = 0;
+  const int tries = covered ? kMostTries * options.rays : options.rays;
+  for (int i = 0; i < tries && count < options.rays; ++i) {
     core::PixelSampler random(kGatherStream, static_cast<std::uint32_t>(layer),
                               first + static_cast<std::uint64_t>(i), options.seed);
     const Vec2 direction = random.next2D(), place = random.next2D();
     const MeshPoint at = texels.pointOn(texel, random.next1D(), place.x, place.y);
     const std::uint32_t triangle = world.firstTriangle(at.object) + at.triangle;
     const Surface from = surfaceOn(world, at.object, triangle, at.b1, at.b2, layer == 0);
+    if (covered && isCovered(world, from, OpenArea::reach(texels, texel), counters)) continue;
     const Vec3 normal = smoothNormal(world, at.object, triangle, at.b1, at.b2, from.ng);
     const Vec3 e = Gatherer(world, texels, source, random, counters).irradiance(from, normal, direction);
     sum += e;
     squares += static_cast<double>(core::luminance(e)) * core::luminance(e);
+    ++count;
   }
-  const double n = options.rays, mean = core::luminance(Vec3(sum)) / n;
+  if (count == 0) return {};
+  const double n = count, mean = core::luminance(Vec3(sum)) / n;
   return {Vec3(sum / n), static_cast<float>(std::max(0.0, squares / n - mean * mean) / n)};
 }
 
 }  // namespace
 
-std::size_t gatherIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                             const TexelLight& source, const GatherOptions& options,
+std::size_t gatherIrradiance(const World& world, const TexelMap& texels, const OpenArea& open, int layer,
+                             BlockRange blocks, const TexelLight& source, const GatherOptions& options,
                              const core::Progress& progress, std::span<DirectEstimate> out) {
   return parallelTexels(options.threads, blocks, texels.texelCount(), progress, [&](std::size_t texel) {
-    const std::int32_t chart = texels.chartOf(texel);
-    if (chart < 0 || !(texels.area(texel) > 0)) return;
-    if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;
-    out[texel] = gatherTexel(world, texels, texel, layer, source, options);
+    const float area = open.areas(layer)[texel];
+    if (!(area > 0)) return;
+    out[texel] = gatherTexel(world, texels, texel, layer, area < texels.area(texel), source, options);
   });
 }
 

@@ -16,6 +16,7 @@
 
 #include "core/progress.h"
 #include "raytrace/bake/direct.h"
+#include "raytrace/bake/open_area.h"
 #include "raytrace/bake/parallel.h"
 #include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
@@ -35,13 +36,13 @@ struct GatherOptions {
   RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 };
 
-/// For the texels of `blocks`: out[texel] = mean over the texel's covered area of the light that diffuse
+/// For the texels of `blocks`: out[texel] = mean over the texel's open area of the light that diffuse
 /// surfaces send to its front (layer 0) or back (layer 1, double-sided charts only), by way of specular ones
 /// too, W/m^2, against the interpolated normal; with the variance of that mean. Texels without surface are
 /// left alone. Same bits for any number of threads and any ranges. Returns the first block that was not done,
 /// for a stop was requested; all before it are.
-std::size_t gatherIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                             const TexelLight& source, const GatherOptions& options,
+std::size_t gatherIrradiance(const World& world, const TexelMap& texels, const OpenArea& open, int layer,
+                             BlockRange blocks, const TexelLight& source, const GatherOptions& options,
                              const core::Progress& progress, std::span<DirectEstimate> out);
 
 }  // namespace saccade::raytrace

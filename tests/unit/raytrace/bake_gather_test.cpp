@@ -35,6 +35,8 @@ struct Stage {
     core::applyCharts(scene, atlas.charts);
     world = std::make_unique<World>(scene, plan);
     texels = std::make_unique<TexelMap>(scene, atlas.size);
+    open = std::make_unique<OpenArea>(*texels, 1);
+    open->probe(*world, *texels, 0, allBlocks(texels->texelCount()), 0, {});
   }
   /// Calls visit(texel) for those with surface.
   template <class Visit>
@@ -52,7 +54,7 @@ struct Stage {
   double indirectWatts(const ParticleState& state) const { return watts(state, state.indirectPlane(0)); }
   std::vector<DirectEstimate> gather(const TexelLight& source, const GatherOptions& options) const {
     std::vector<DirectEstimate> out(texels->texelCount());
-    gatherIrradiance(*world, *texels, 0, allBlocks(texels->texelCount()), source, options, {}, out);
+    gatherIrradiance(*world, *texels, *open, 0, allBlocks(texels->texelCount()), source, options, {}, out);
     return out;
   }
   TexelLight constantLight(float irradiance) const {
@@ -64,6 +66,7 @@ struct Stage {
   core::Scene scene;
   std::unique_ptr<World> world;
   std::unique_ptr<TexelMap> texels;
+  std::unique_ptr<OpenArea> open;
 };
 
 /// A unit box from inside, all walls but the one at x = 1 alike.
@@ -140,6 +143,22 @@ TEST(BakeGather, OpenEdgesAndBlackBacksBringNothing) {
   });
 }
 
+/// A floor of 1 m^2 under a sheet of 0.02 m^2 that lies 1 mm above it.
+TEST(OpenArea, WhatStandsOnAFloorTakesItsAreaFromTheTexelsBelow) {
+  Builder b;
+  const int floor = b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
+  b.quad(Builder::matte(0.5f), Vec3(0.7f, 0.001f, 0.9f), Vec3(0.1f, 0, 0), Vec3(0, 0, -0.2f));
+  const Stage s(std::move(b.scene));
+  double area = 0, open = 0;
+  s.forEachTexel([&](std::size_t t) {
+    if (s.texels->fragments(t)[0].object != static_cast<std::uint32_t>(floor)) return;
+    area += s.texels->area(t);
+    open += s.open->areas(0)[t];
+  });
+  EXPECT_NEAR(area, 1, 1e-4);
+  EXPECT_NEAR(open, 1 - 0.02, 0.002);
+}
+
 TEST(BakeGather, TheSameBitsForAnyThreadsAndBlocks) {
   core::Material glossy = Builder::matte(0.6f);
   glossy.specular = 1;
@@ -151,8 +170,8 @@ TEST(BakeGather, TheSameBitsForAnyThreadsAndBlocks) {
   std::vector<DirectEstimate> inParts(s.texels->texelCount());
   const BlockRange all = allBlocks(s.texels->texelCount());
   for (std::size_t block = all.last; block-- > all.first;) {
-    gatherIrradiance(*s.world, *s.texels, 0, {block, block + 1}, light, {.rays = 4, .threads = 3}, {},
-                     inParts);
+    gatherIrradiance(*s.world, *s.texels, *s.open, 0, {block, block + 1}, light, {.rays = 4, .threads = 3},
+                     {}, inParts);
   }
   for (std::size_t t = 0; t < inOne.size(); ++t) {
     ASSERT_EQ(inOne[t].irradiance, inParts[t].irradiance);
