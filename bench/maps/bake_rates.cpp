@@ -41,11 +41,13 @@ class Stages {
   Stages(const app::Workspace& opened, std::uint32_t seed)
       : world_(*opened.world),
         texels_(opened.scene, opened.maps.width),
+        open_(texels_, 1),
         seed_(seed),
         light_(lightOf(opened.maps)),
         particles_(world_, texels_.texelCount(), opened.maps.layers),
         estimates_(texels_.texelCount()) {
     blocks_.last = std::min(kBlocks, raytrace::allBlocks(texels_.texelCount()).last);
+    open_.probe(world_, texels_, 0, blocks_, 0, {});
   }
 
   std::vector<Piece> pieces() {
@@ -70,7 +72,7 @@ class Stages {
                raytrace::GatherOptions options;
                options.seed = seed_;
                options.counters = &counters;
-               raytrace::gatherIrradiance(world_, texels_, 0, blocks_, light_, options, {}, estimates_);
+               raytrace::gatherIrradiance(world_, texels_, open_, 0, blocks_, light_, options, {}, estimates_);
              }}};
   }
 
@@ -86,6 +88,7 @@ class Stages {
 
   const raytrace::World& world_;
   raytrace::TexelMap texels_;
+  raytrace::OpenArea open_;
   std::uint32_t seed_;
   raytrace::TexelLight light_;
   raytrace::ParticleState particles_;
