@@ -211,8 +211,11 @@ class MapsOfScene {
 
   /// Stopped where it has taken so long that ours is proved to be soon enough.
   double gatherCap() const {
-    const auto ours = secondsToError(ours_, effort_.errors.back());
-    const double enough = ours ? ours->seconds / kGoalRatio : 0;
+    double enough = 0;
+    for (const double error : effort_.errors) {
+      const auto ours = secondsToError(ours_, error);
+      if (ours) enough = std::max(enough, ours->seconds / kGoalRatio);
+    }
     return std::clamp(1.2 * enough, effort_.leastGatherSeconds, effort_.mostGatherSeconds);
   }
 
@@ -234,7 +237,7 @@ class MapsOfScene {
     GatheredMaps gathered(*opened_, session_.options().seed, threads_);
     double error = 1e9;
     for (std::uint64_t n = 1; error > effort_.errors.back(); n = nextPaths(gathered, cap)) {
-      if (n < gathered.paths() + (gathered.paths() + 1) / 2) break;
+      if (10 * n < 11 * gathered.paths()) break;  // the cap is reached, as near as it pays
       session_.say("maps: " + name_ + ", path-traced gather, " + std::to_string(n) + " paths a texel");
       app::ProgressBar bar("gathering");
       gathered.growTo(n, {[&](double fraction) { bar.show(fraction); }, session_.stop()});
