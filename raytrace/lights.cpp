@@ -123,8 +123,14 @@ bool Lights::sampleTriangle(const Emissive& e, float choice, const Vec3& point, 
   return std::isfinite(out.pdf) && out.pdf > 0;
 }
 
-bool Lights::samplePunctual(const Group& group, const Vec3& point, LightSample& out) const {
-  const core::PunctualLight& light = scene_.lights[group.punctual];
+float Lights::meanRadiance(std::size_t i) const {
+  const Emissive& e = emissive_[i];
+  const float sides = e.doubleSided ? 2 : 1;
+  return groups_[e.group].power * e.choiceInGroup / (sides * core::kPi * e.area);
+}
+
+bool Lights::samplePunctual(std::size_t index, const Vec3& point, LightSample& out) const {
+  const core::PunctualLight& light = scene_.lights[index];
   out.delta = true;
   if (light.type == core::PunctualLight::Type::directional) {
     out.direction = -light.direction;
@@ -177,7 +183,7 @@ bool Lights::sampleByGroup(const LightChoice& choice, float uLight, const Vec2& 
   if (!(share > 0)) return false;
   out.pdf *= share / total;
   const Group& group = groups_[g];
-  if (group.punctual >= 0) return samplePunctual(group, choice.point, out);
+  if (group.punctual >= 0) return samplePunctual(static_cast<std::size_t>(group.punctual), choice.point, out);
   float rest = std::clamp((target - below) / share, 0.0f, AliasTable::kBelowOne);
   const Emissive& e = emissive_[group.first + group.triangles.sample(rest, rest)];
   return sampleTriangle(e, e.choiceInGroup, choice.point, u, out);
@@ -189,7 +195,8 @@ bool Lights::sampleByTree(const LightChoice& choice, float uLight, const Vec2& u
       float rest = 0;
       const std::uint32_t i = parallelTable_.sample(uLight / choice.parallel, rest);
       out.pdf *= choice.parallel * parallelTable_.probability(i);
-      return samplePunctual(groups_[parallelGroups_[i]], choice.point, out);
+      return samplePunctual(static_cast<std::size_t>(groups_[parallelGroups_[i]].punctual), choice.point,
+                            out);
     }
     uLight = (uLight - choice.parallel) / (1 - choice.parallel);
     out.pdf *= 1 - choice.parallel;
@@ -199,7 +206,9 @@ bool Lights::sampleByTree(const LightChoice& choice, float uLight, const Vec2& u
   if (drawn.lamp < emissive_.size())
     return sampleTriangle(emissive_[drawn.lamp], drawn.probability, choice.point, u, out);
   out.pdf *= drawn.probability;
-  return samplePunctual(groups_[treeGroups_[drawn.lamp - emissive_.size()]], choice.point, out);
+  return samplePunctual(
+      static_cast<std::size_t>(groups_[treeGroups_[drawn.lamp - emissive_.size()]].punctual), choice.point,
+      out);
 }
 
 float Lights::pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3& direction, float t) const {
@@ -217,10 +226,19 @@ float Lights::pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3&
   return others * groupProbability(choice, e.group) * e.choiceInGroup / e.area * t * t / facing;
 }
 
+Ray shadowRay(const Vec3& origin, const LightSample& light) {
+  return {origin, light.direction, 0, light.distance * kShadowEnd};
+}
+
 Ray shadowRay(const Surface& from, const LightSample& light) {
-  Ray ray = from.leave(light.direction);
-  ray.tFar = light.distance * kShadowEnd;
-  return ray;
+  const Ray ray = from.leave(light.direction);
+  if (!std::isfinite(light.distance)) return ray;
+  // From where the ray really starts: of a lamp so near that this shift matters the ray would end behind it.
+  const Vec3 way = from.position + light.direction * light.distance - ray.origin;
+  LightSample shifted;
+  shifted.distance = glm::length(way);
+  shifted.direction = shifted.distance > 0 ? way / shifted.distance : light.direction;
+  return shadowRay(ray.origin, shifted);
 }
 
 }  // namespace saccade::raytrace

@@ -67,6 +67,8 @@ class Lights {
   /// Emissive triangles, the order of TriangleRecord::light.
   std::size_t emissiveCount() const { return emissive_.size(); }
   std::uint32_t emissiveTriangle(std::size_t i) const { return emissive_[i].triangle; }
+  /// Luminance of the mean radiance of the i-th, > 0.
+  float meanRadiance(std::size_t i) const;
   double totalPower() const { return emissionTable_.total(); }  ///< watts, luminance-weighted
   /// Null where the scene has none or a black one.
   const EnvironmentLight* environment() const { return environment_.get(); }
@@ -78,6 +80,8 @@ class Lights {
   /// Density per solid angle with which sample() would have made a ray that hit this world triangle at
   /// distance t with unit direction. 0 for triangles that are no light or face away.
   float pdf(const LightChoice& choice, std::uint32_t triangle, const Vec3& direction, float t) const;
+  /// The way to one of the scene's punctual lights; leaves out.pdf alone. False where it does not shine.
+  bool samplePunctual(std::size_t light, const Vec3& point, LightSample& out) const;
   /// The same for a ray that left the scene: only where there is an environment.
   float environmentPdf(const LightChoice& choice, const Vec3& direction) const {
     return choice.environment * environment_->pdf(direction);
@@ -115,7 +119,6 @@ class Lights {
   /// `choice`: the probability with which this triangle was drawn.
   bool sampleTriangle(const Emissive& e, float choice, const Vec3& point, const Vec2& u,
                       LightSample& out) const;
-  bool samplePunctual(const Group& group, const Vec3& point, LightSample& out) const;
   float environmentShare(float others) const;
   // `probability`: with which it came to be asked; the flux is divided by it.
   EmissionSample emitFromTriangle(const Group& group, float probability, float uTriangle,
@@ -147,5 +150,7 @@ inline Vec2 uniformTriangle(const Vec2& u) {
 /// The shadow ray from a surface point to a light sample; it ends before the light.
 struct Surface;
 Ray shadowRay(const Surface& from, const LightSample& light);
+/// The same from where the ray starts, safe against its own surface; the light as it is seen from there.
+Ray shadowRay(const Vec3& origin, const LightSample& light);
 
 }  // namespace saccade::raytrace

@@ -20,7 +20,7 @@ enum class Transport {
 
 /// Part of the keys under which path-traced references are kept: raise it whenever the radiance of any path
 /// changes.
-inline constexpr int kPathTracerVersion = 1;
+inline constexpr int kPathTracerVersion = 2;
 
 struct PathOptions {
   int samplesPerPixel = 64;

@@ -1,4 +1,8 @@
 // Direct irradiance per texel: shadow rays from points spread over the texel's covered area.
+//
+// Where lamps are few (few_lamps.h) their unshadowed irradiance is exact at every point, so that light in the
+// open carries no noise but that of the points, at any distance from a lamp; else lamps are sampled
+// (many_lights.h), and so is the environment always. A texel whose samples disagree gets more of them.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +16,9 @@
 namespace saccade::raytrace {
 
 struct DirectOptions {
-  int samples = 16;    ///< per texel and side
-  int refinement = 4;  ///< times as many samples where the first ones disagree (penumbrae, shadow edges)
-  float relativeError = 0.02f;  ///< standard error of the mean above which a texel is refined
+  int samples = 16;    ///< per texel and side; best a power of 2
+  int refinement = 4;  ///< up to so many times as many samples where they disagree (penumbrae, shadow edges)
+  float relativeError = 0.02f;  ///< standard error of the mean that a texel is refined down to
   std::uint32_t seed = 1;
   int threads = 0;                  ///< 0 = inline
   RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
@@ -22,7 +26,9 @@ struct DirectOptions {
 
 struct DirectEstimate {
   Vec3 irradiance{0};  ///< W/m^2
-  float variance = 0;  ///< of the luminance of `irradiance`, from the spread of the samples: an upper bound
+  /// Of the luminance of `irradiance`, from the spread of the samples. They lie more evenly than that takes
+  /// for granted, so it is a bound on average (found: 3/4 of it); samples that agree by chance state 0.
+  float variance = 0;
 };
 
 /// For the texels of `blocks`: out[texel] = mean over the texel's covered area of the light that arrives
