@@ -131,7 +131,8 @@ void MaterialExporter::addLobes(const Material& m, json& out) {
   if (m.specular != 1 || m.specularColor != Vec3(1) || m.specularTexture || m.specularColorTexture) {
     json& e = extension(out, "KHR_materials_specular");
     e["specularFactor"] = static_cast<double>(m.specular);
-    e["specularColorFactor"] = jsonArray(m.specularColor);
+    // Blender 3.4 reads the colour and not the factor.
+    e["specularColorFactor"] = jsonArray(m.specular == 0 ? Vec3(0) : m.specularColor);
     put(e, "specularTexture", m, m.specularTexture);
     put(e, "specularColorTexture", m, m.specularColorTexture);
   }

@@ -186,12 +186,12 @@ TEST(ExportGltf, MaterialsComeBackWithoutAWarning) {
     SCOPED_TRACE(a.name);
     EXPECT_EQ(a.name, b.name);
     const auto factors = [](const Material& m) {
-      return std::tuple(m.baseColor, m.alpha, m.metallic, m.normalScale, m.ior, m.specular, m.specularColor,
-                        m.transmission, m.thinWalled, m.attenuationColor, m.attenuationDistance, m.dispersion,
-                        m.clearcoat, m.clearcoatRoughness, m.clearcoatNormalScale, m.anisotropy,
-                        m.anisotropyRotation, m.sheenColor, m.sheenRoughness, m.iridescence, m.iridescenceIor,
-                        m.iridescenceThicknessMin, m.iridescenceThicknessMax, m.alphaMode, m.alphaCutoff,
-                        m.doubleSided, m.unlit);
+      return std::tuple(m.baseColor, m.alpha, m.metallic, m.normalScale, m.ior, m.specular,
+                        m.specular * m.specularColor, m.transmission, m.thinWalled, m.attenuationColor,
+                        m.attenuationDistance, m.dispersion, m.clearcoat, m.clearcoatRoughness,
+                        m.clearcoatNormalScale, m.anisotropy, m.anisotropyRotation, m.sheenColor,
+                        m.sheenRoughness, m.iridescence, m.iridescenceIor, m.iridescenceThicknessMin,
+                        m.iridescenceThicknessMax, m.alphaMode, m.alphaCutoff, m.doubleSided, m.unlit);
     };
     EXPECT_TRUE(factors(a) == factors(b));
     if (!a.ward) {
