@@ -12,7 +12,7 @@
 namespace saccade::raytrace {
 namespace {
 
-/// Points in a texel, where the colour is textured.
+/// Points in a texel.
 constexpr int kPoints = 4;
 
 std::size_t materialOf(const core::Scene& scene, const TexelMap& texels, std::size_t texel) {
@@ -56,10 +56,9 @@ std::vector<char> brighterSides(const TexelMap& texels, const core::Illumination
 
 /// Mean over a texel of what the base layer shows from `layer`'s side.
 Vec3 radianceOf(const World& world, const TexelMap& texels, std::size_t texel, int layer) {
-  const int points = isDetailed(world.scene(), texels.fragments(texel).front().object) ? kPoints : 1;
   Vec3 sum(0);
-  for (int i = 0; i < points; ++i) {
-    const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(points);
+  for (int i = 0; i < kPoints; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / kPoints;
     const MeshPoint p = texels.pointOn(texel, u, i % 2 ? 0.25f : 0.75f, i < 2 ? 0.25f : 0.75f);
     Hit hit;
     hit.object = p.object;
@@ -70,7 +69,7 @@ Vec3 radianceOf(const World& world, const TexelMap& texels, std::size_t texel, i
     const BaseLight light = baseLight(world, hit, layer == 0 ? -hit.ng : hit.ng);
     sum += light.reflected + light.emitted;
   }
-  return sum / static_cast<float>(points);
+  return sum / static_cast<float>(kPoints);
 }
 
 /// Codes of the values relative to the brightest of each material, which goes to `brightest`.
