@@ -18,44 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file that disappears unless it was renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) {
-    static std::atomic<unsigned> count = 0;
-    path_ = target;
-    path_ += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
-    descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (created_) ::unlink(path_.c_str());
-  }
-  bool write(std::span<const std::uint8_t> bytes) {
-    if (descriptor_ < 0) return false;
-    created_ = true;
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-    return ::close(std::exchange(descriptor_, -1)) == 0;
-  }
-  bool renameTo(const fs::path& target) {
-    if (::rename(path_.c_str(), target.c_str()) != 0) return false;
-    created_ = false;
-    return true;
-  }
-
- private:
-  fs::path path_;
-  int descriptor_ = -1;
-  bool created_ = false;
-};
-
 std::vector<std::uint8_t> readBytes(const fs::path& file, LoadBudget* budget) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -80,11 +42,42 @@ std::vector<std::uint8_t> readWholeFile(const fs::path& file, LoadBudget& budget
   return readBytes(file, &budget);
 }
 
-void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) {
-  TemporaryFile temporary(file);
-  if (!temporary.write(bytes) || !temporary.renameTo(file)) {
-    throw Error(file.string() + ": cannot be written: " + std::strerror(errno));
+AtomicFile::AtomicFile(const fs::path& file) : file_(file), temporary_(file) {
+  static std::atomic<unsigned> count = 0;
+  temporary_ += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+  descriptor_ = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail();
+  created_ = true;
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (created_) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::fail() const {
+  throw Error(file_.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+void AtomicFile::write(std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail();
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+void AtomicFile::commit() {
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail();
+  if (::rename(temporary_.c_str(), file_.c_str()) != 0) fail();
+  created_ = false;
+}
+
+void writeFileAtomically(const fs::path& file, std::span<const std::uint8_t> bytes) {
+  AtomicFile whole(file);
+  whole.write(bytes);
+  whole.commit();
 }
 
 }  // namespace saccade::core

@@ -17,9 +17,28 @@ std::vector<std::uint8_t> readWholeFile(const std::filesystem::path& file);
 /// As many bytes as `budget` has left at most; they stay charged.
 std::vector<std::uint8_t> readWholeFile(const std::filesystem::path& file, LoadBudget& budget);
 
-/// Writes beside `file` under a temporary name of its own and renames: after a failure, a kill or beside a
-/// second writer the old file or a new one is there, whole. Throws core::Error, leaving no temporary file.
-/// Any thread.
+/// A file written piece by piece beside its place, under a temporary name of its own: after a failure, a kill
+/// or beside a second writer the old file or a new one is there, whole. One thread.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& file);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Without commit() nothing is left.
+  ~AtomicFile();
+  /// Throws core::Error.
+  void write(std::span<const std::uint8_t> bytes);
+  /// Puts the file in its place; nothing may be written afterwards. Throws core::Error.
+  void commit();
+
+ private:
+  [[noreturn]] void fail() const;
+  std::filesystem::path file_, temporary_;
+  int descriptor_ = -1;
+  bool created_ = false;
+};
+
+/// A whole AtomicFile. Throws core::Error, leaving no temporary file. Any thread.
 void writeFileAtomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
 }  // namespace saccade::core

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/atomic_file.h"
+#include "core/byte_reader.h"
 #include "core/cache_folder.h"
 #include "core/content_hash.h"
 #include "core/math/half.h"
@@ -42,46 +43,13 @@ class Writer {
   std::vector<std::uint8_t> bytes_;
 };
 
-class Reader {
- public:
-  Reader(std::span<const std::uint8_t> bytes, std::string name) : rest_(bytes), name_(std::move(name)) {}
-
-  template <class T>
-  T number() {
-    T value;
-    take(&value, sizeof value);
-    return value;
-  }
-  template <class T>
-  std::vector<T> array() {
-    const auto count = number<std::uint64_t>();
-    if (count > rest_.size() / sizeof(T)) refuse("is cut off");
-    std::vector<T> out(static_cast<std::size_t>(count));
-    take(out.data(), out.size() * sizeof(T));
-    return out;
-  }
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw Error(name_ + ": this illumination map file " + why + "; bake again");
-  }
-  bool atEnd() const { return rest_.empty(); }
-
- private:
-  void take(void* to, std::size_t bytes) {
-    if (bytes > rest_.size()) refuse("is cut off");
-    if (bytes > 0) std::memcpy(to, rest_.data(), bytes);
-    rest_ = rest_.subspan(bytes);
-  }
-  std::span<const std::uint8_t> rest_;
-  std::string name_;
-};
-
 std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
   ContentHash hash;
   hash.add(bytes);
   return hash.value();
 }
 
-void readHeader(Reader& in, IlluminationMaps& maps, std::uint64_t key) {
+void readHeader(ByteReader& in, IlluminationMaps& maps, std::uint64_t key) {
   if (in.number<std::array<char, 8>>() != kMagic) in.refuse("is none (wrong first bytes)");
   const auto version = in.number<std::uint32_t>();
   if (in.number<std::uint32_t>() != kByteOrder) in.refuse("was written on a machine of another byte order");
@@ -101,7 +69,7 @@ void readHeader(Reader& in, IlluminationMaps& maps, std::uint64_t key) {
   maps.quality.assign(quality.begin(), quality.end());
 }
 
-void readTexels(Reader& in, IlluminationMaps& maps) {
+void readTexels(ByteReader& in, IlluminationMaps& maps) {
   maps.texels = in.array<std::uint16_t>();
   const std::uint64_t wanted = std::uint64_t{3} * static_cast<std::uint64_t>(maps.width) *
                                static_cast<std::uint64_t>(maps.height) *
@@ -113,7 +81,7 @@ void readTexels(Reader& in, IlluminationMaps& maps) {
     in.refuse("holds texels that are not finite");
 }
 
-MeshCharts readCharts(Reader& in) {
+MeshCharts readCharts(ByteReader& in) {
   MeshCharts charts;
   charts.sourceVertex = in.array<std::uint32_t>();
   charts.uv = in.array<Vec2>();
@@ -304,7 +272,7 @@ IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key) 
   constexpr std::size_t kSum = sizeof(std::uint64_t);
   const std::size_t body = bytes.size() < kSum ? 0 : bytes.size() - kSum;
   const std::span<const std::uint8_t> content(bytes.data(), body);
-  Reader in(content, file.string());
+  ByteReader in(content, file.string(), "illumination map file", "bake again");
   IlluminationMaps maps;
   readHeader(in, maps, key);
   std::uint64_t stated = 0;

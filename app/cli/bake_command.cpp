@@ -19,6 +19,8 @@ struct BakeOptions {
   std::string output;
   std::string importFolder;
   float importScale = 1;
+  bool resume = false;
+  int checkpointSeconds = 60;
   std::string exportFile;
 
   /// An export alone takes the maps that are there.
@@ -33,7 +35,9 @@ int bake(const BakeOptions& o) {
                       .threads = tracerThreads(o.run),
                       .seed = o.run.seed,
                       .importFolder = o.importFolder,
-                      .importScale = o.importScale};
+                      .importScale = o.importScale,
+                      .resume = o.resume,
+                      .checkpointEvery = std::chrono::seconds(o.checkpointSeconds)};
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
   if (!o.exportFile.empty()) exportLit(*workspace, o.exportFile, tracerThreads(o.run), interruptToken());
@@ -67,6 +71,15 @@ void addBakeCommand(CLI::App& program, Run& run) {
       "--export", o->exportFile,
       "Also write the lit scene as FILE.glb for Blender, three.js and others, with its irradiance "
       "in FILE.exr beside it (docs/lightmaps.md); alone it takes maps that are already there");
+  command->add_flag("--resume", o->resume,
+                    "Go on from the checkpoint of a bake that was stopped (the map file's name with .part "
+                    "behind it), with the same scene and settings; --threads may differ");
+  command
+      ->add_option(
+          "--checkpoint-seconds", o->checkpointSeconds,
+          "Write a checkpoint at the latest every so many seconds; also when stopped (Ctrl-C, SIGTERM)")
+      ->check(CLI::Range(0, 86400))
+      ->capture_default_str();
   addRunOptions(*command, o->run);
   command->callback([o, &run] { run = [o] { return bake(*o); }; });
 }

@@ -31,15 +31,20 @@ ProgressBar::~ProgressBar() {
 }
 
 void ProgressBar::show(double fraction) {
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  show(fraction, fraction > 0 ? elapsed / fraction * (1 - fraction) : 0, "");
+}
+
+void ProgressBar::show(double fraction, double secondsLeft, const std::string& stage) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double left = fraction > 0 ? elapsed / fraction * (1 - fraction) : 0;
   const int percent = static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0));
+  const std::string doing = stage.empty() ? "" : " (" + stage + ")";
   if (!terminal_) {
     if (percent / 10 <= lastTenth_) return;
     lastTenth_ = percent / 10;
-    std::fprintf(stderr, "saccade: %s: %d %%, %.0f s left\n", label_.c_str(), percent, left);
+    std::fprintf(stderr, "saccade: %s: %d %%, %.0f s left%s\n", label_.c_str(), percent, secondsLeft,
+                 doing.c_str());
     return;
   }
   if (fraction < 1 && now - last_ < std::chrono::milliseconds(100)) return;
@@ -47,8 +52,8 @@ void ProgressBar::show(double fraction) {
   shown_ = true;
   constexpr int kWidth = 30;
   const std::string bar(static_cast<std::size_t>(percent * kWidth / 100), '#');
-  std::fprintf(stderr, "\r%s [%-*s] %3d %%, %.0f s left   ", label_.c_str(), kWidth, bar.c_str(), percent,
-               left);
+  std::fprintf(stderr, "\r%s [%-*s] %3d %%, %.0f s left%s\033[K", label_.c_str(), kWidth, bar.c_str(),
+               percent, secondsLeft, doing.c_str());
 }
 
 namespace {

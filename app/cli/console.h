@@ -21,8 +21,10 @@ class ProgressBar {
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  /// Fraction in [0, 1].
+  /// Fraction in [0, 1] of the time since the bar was made.
   void show(double fraction);
+  /// For work that knows its own time left, and `stage`, what it is doing.
+  void show(double fraction, double secondsLeft, const std::string& stage);
 
  private:
   using Clock = std::chrono::steady_clock;

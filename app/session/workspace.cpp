@@ -6,6 +6,7 @@
 
 #include "app/cli/console.h"
 #include "app/session/lightmap_import.h"
+#include "app/session/long_bake.h"
 #include "raytrace/bake/baker.h"
 #include "raytrace/bake/charts.h"
 
@@ -44,6 +45,7 @@ void store(const std::filesystem::path& file, const core::IlluminationMaps& maps
     std::error_code ignored;  // writeMaps reports what went wrong
     std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), ignored);
     core::writeMaps(file, maps);
+    forgetCheckpoint(file);
   } catch (const core::Error& e) {
     if (namedByUser) throw;
     spdlog::warn("{}; going on with the maps in memory (set XDG_CACHE_HOME or --maps to keep them)",
@@ -70,7 +72,6 @@ raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Load
 
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
                                const BakeRequest& bake, std::uint64_t key, const std::stop_token& stop) {
-  ProgressBar bar("baking");
   raytrace::BakeOptions bakeOptions;
   bakeOptions.quality = options.quality;
   bakeOptions.photons = options.photons;
@@ -81,8 +82,10 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
     imported = importReported(bake, options.load.limits, w.scene);
     bakeOptions.imported = &imported;
   }
-  core::IlluminationMaps maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bakeOptions,
-                                                   {[&](double fraction) { bar.show(fraction); }, stop});
+  raytrace::BakeJob job(*w.world, atlas.size, bakeOptions);
+  const LongBake kept{mapsPath(key, options, bake), key, bake.resume || !bake.always, bake.always,
+                      bake.checkpointEvery};
+  core::IlluminationMaps maps = bakeLong(job, std::move(atlas.charts), kept, stop);
   maps.key = key;
   if (maps.clampedTexels > 0)
     spdlog::warn("illumination maps hold at most 65504 W/m^2: {} texels are brighter, {:.3g} W are left out",

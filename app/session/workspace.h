@@ -1,6 +1,7 @@
 // A scene made ready to walk: loaded, charted, its maps read or baked, its ray-tracing world built.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -34,6 +35,8 @@ struct BakeRequest {
   std::uint32_t seed = 1;
   std::filesystem::path importFolder;  ///< lightmaps of another program; empty = none
   float importScale = 1;               ///< irradiance = pi * value * scale
+  bool resume = false;                 ///< go on from a checkpoint (a bake that is not `always` does anyway)
+  std::chrono::seconds checkpointEvery{60};
 };
 
 /// Loads the scene and prints its warnings. Throws core::Error.

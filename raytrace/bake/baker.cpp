@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 #include <utility>
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "raytrace/bake/density.h"
 #include "raytrace/bake/gutters.h"
@@ -219,6 +220,26 @@ bool BakeJob::advance(const std::stop_token& pause, const BakeReport& report) {
     if (!run(stage, stage.units, pause, report)) return false;
   return true;
 }
+
+std::uint64_t BakeJob::settingsHash() const {
+  core::ContentHash hash;
+  hash.add(options_.quality);
+  hash.add(options_.photons);
+  hash.add(options_.seed);
+  hash.add(texels_.size());
+  for (const core::Mesh& mesh : world_.scene().meshes) {
+    for (const std::uint32_t i : mesh.indices) {
+      hash.add(mesh.lightmapUv[i].x);
+      hash.add(mesh.lightmapUv[i].y);
+    }
+  }
+  for (const core::Object& object : world_.scene().objects) {
+    for (int c = 0; c < 4; ++c) hash.add(object.lightmapScaleOffset[c]);
+  }
+  return hash.value();
+}
+
+BakeProgress BakeJob::progress() { return progressAt({}, ""); }
 
 bool BakeJob::run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause,
                   const BakeReport& report) {

@@ -64,6 +64,13 @@ class BakeJob {
   /// `done`, `seconds` and `results` of another.
   std::span<BakeStage> stages() { return stages_; }
 
+  /// Hash of all that the stages' results depend on, beside the scene's key: options but threads and imported
+  /// light, which only the quick end reads, and the charts.
+  std::uint64_t settingsHash() const;
+
+  /// How far it is, by what its stages took so far.
+  BakeProgress progress();
+
   /// The quick end, once advance() returned true. Takes `charts` into the maps; `key` is left 0. Throws
   /// core::Error when stopped; it may then be called again.
   core::IlluminationMaps finish(core::SceneCharts charts, const std::stop_token& stop,
