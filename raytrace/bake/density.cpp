@@ -20,11 +20,6 @@ struct WindowSum {
   double squared = 0;  ///< of luminance weights
   double area = 0;     ///< m^2
 
-  WindowSum& addScaled(const WindowSum& o, double scale) {
-    weight += o.weight * scale;
-    area += o.area * scale;
-    return *this;
-  }
   double luminance() const { return 0.2126 * weight.x + 0.7152 * weight.y + 0.0722 * weight.z; }
   double effectiveCount() const { return squared > 0 ? luminance() * luminance() / squared : 0; }
 };
@@ -54,10 +49,13 @@ class SummedArea {
 
   /// The window of half side `radius` around (x, y), cut to the chart.
   WindowSum window(const ChartRect& chart, int x, int y, int radius) const {
-    const Entry& a = at(std::max(chart.x0, x - radius), std::max(chart.y0, y - radius));
-    const Entry& b = at(std::min(chart.x1, x + radius + 1), std::max(chart.y0, y - radius));
-    const Entry& c = at(std::max(chart.x0, x - radius), std::min(chart.y1, y + radius + 1));
-    const Entry& d = at(std::min(chart.x1, x + radius + 1), std::min(chart.y1, y + radius + 1));
+    return sum({std::max(chart.x0, x - radius), std::max(chart.y0, y - radius),
+                std::min(chart.x1, x + radius + 1), std::min(chart.y1, y + radius + 1)});
+  }
+
+  WindowSum sum(const ChartRect& rect) const {
+    const Entry &a = at(rect.x0, rect.y0), &b = at(rect.x1, rect.y0), &c = at(rect.x0, rect.y1),
+                &d = at(rect.x1, rect.y1);
     const auto weight = [&](int i) {
       return static_cast<double>(d.flux[i] - b.flux[i] - c.flux[i] + a.flux[i]) / FluxGrid::kUnitsPerWeight;
     };
@@ -113,20 +111,63 @@ std::size_t medianRadius(const std::vector<std::uint8_t>& chosen, int size, cons
   return near[count / 2];
 }
 
-/// A stack of three windows, wide to narrow: near enough to a bell to leave no edges of its own.
+/// A plane through the densities of a window's parts by least squares, weighted by a bell over the window:
+/// its value at the centre. Where the window is cut at a chart's border, or light rises across it, the mean
+/// would be off by the slope times the way to the window's centroid (local linear regression, Fan 1992).
+class LocalPlane {
+ public:
+  /// `at`: middle of the part, from the window's centre, in half sides.
+  void add(const WindowSum& part, const glm::dvec2& at) {
+    const double bell = (kBellReach - at.x * at.x) * (kBellReach - at.y * at.y);
+    const glm::dvec3 basis(1, at.x, at.y);
+    normal_ += glm::outerProduct(basis, basis) * (bell * part.area);
+    for (int c = 0; c < 3; ++c) moments_[c] += basis * (bell * part.weight[c]);
+  }
+  /// Weight per area at the centre, no less than a fraction of `mean` and no more than a multiple: noise.
+  glm::dvec3 center(const glm::dvec3& mean) const {
+    const double scale = normal_[0][0];
+    const glm::dmat3 m = normal_ / scale;
+    if (!(glm::determinant(m) > kSmallestDeterminant)) return mean;
+    const glm::dvec3 row = glm::inverse(m)[0];  // symmetric
+    glm::dvec3 value;
+    for (int c = 0; c < 3; ++c) value[c] = glm::dot(row, moments_[c]) / scale;
+    return glm::clamp(value, mean / kLargestChange, mean * kLargestChange);
+  }
+
+ private:
+  static constexpr double kBellReach = 1.2;  // half sides: not quite 0 at the window's edge
+  static constexpr double kSmallestDeterminant = 1e-4;
+  static constexpr double kLargestChange = 3;
+  glm::dmat3 normal_{0};
+  glm::dvec3 moments_[3] = {};
+};
+
 DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, int y, std::size_t radius,
                          double watts) {
-  const WindowSum wide = sums.window(chart, x, y, kRadii[radius]);
-  WindowSum stack;
-  stack.addScaled(wide, 1);
-  if (radius > 0 && wide.effectiveCount() > kFew) {
-    stack.addScaled(sums.window(chart, x, y, kRadii[radius] * 2 / 3), 1);
-    stack.addScaled(sums.window(chart, x, y, kRadii[radius] / 3), 1);
+  constexpr int kParts = 7;  // along a side
+  const int r = kRadii[radius];
+  const WindowSum whole = sums.window(chart, x, y, r);
+  glm::dvec3 density = whole.weight / whole.area;
+  if (r > 0 && whole.effectiveCount() > kFew) {
+    const int side = 2 * r + 1, parts = std::min(side, kParts);
+    LocalPlane plane;
+    for (int i = 0; i < parts; ++i) {
+      const int y0 = y - r + side * i / parts, y1 = y - r + side * (i + 1) / parts;
+      for (int k = 0; k < parts; ++k) {
+        const int x0 = x - r + side * k / parts, x1 = x - r + side * (k + 1) / parts;
+        const ChartRect part{std::max(x0, chart.x0), std::max(y0, chart.y0), std::min(x1, chart.x1),
+                             std::min(y1, chart.y1)};
+        if (part.x0 >= part.x1 || part.y0 >= part.y1) continue;
+        const glm::dvec2 middle(0.5 * (part.x0 + part.x1 - 1) - x, 0.5 * (part.y0 + part.y1 - 1) - y);
+        plane.add(sums.sum(part), middle / (r + 0.5));
+      }
+    }
+    density = plane.center(density);
   }
   DensityEstimate out;
-  out.irradiance = Vec3(stack.weight * (watts / stack.area));
-  if (wide.luminance() > 0)
-    out.relativeError = static_cast<float>(std::sqrt(wide.squared) / wide.luminance());
+  out.irradiance = Vec3(density * watts);
+  if (whole.luminance() > 0)
+    out.relativeError = static_cast<float>(std::sqrt(whole.squared) / whole.luminance());
   return out;
 }
 

@@ -1,11 +1,12 @@
 // Particle density to irradiance: a kernel whose width follows the local density and the light itself.
 //
-// In each chart flux and covered area are summed over square windows of texels (summed-area tables), and
-// irradiance is their quotient. Only area that is there is counted, so nothing darkens towards chart borders.
-// A window grows while its estimate agrees, within its own statistical error, with those of all smaller ones
-// (the intersection of confidence intervals, Goldenshluger and Nemirovski 1997): where light is even the
-// window is wide and noise small; at a shadow's or caustic's edge, or at the foot of a wall with a dark room
-// behind, it stops.
+// In each chart flux and open area are summed over square windows of texels (summed-area tables), and
+// irradiance is their quotient at the window's centre, by a plane through the quotients of the window's
+// parts. Only area that is there is counted, so nothing darkens towards chart borders, and the plane takes
+// out the slope that a window cut by a border would otherwise mistake for level. A window grows while its
+// estimate agrees, within its own statistical error, with those of all smaller ones (the intersection of
+// confidence intervals, Goldenshluger and Nemirovski 1997): where light is even the window is wide and noise
+// small; at a shadow's or caustic's edge, or at the foot of a wall with a dark room behind, it stops.
 #pragma once
 
 #include <span>

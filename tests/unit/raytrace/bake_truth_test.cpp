@@ -86,7 +86,7 @@ TEST(BakeTruth, Hard8AParallelPlateIsLitByTheOtherWithinHalfAPercent) {
   const int upper = b.quad(Builder::matte(kNearlyBlack), Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1));
   addSun(b, Vec3(2, -1, 0));
   const double sent = 0.5 * 4 / std::sqrt(5.0);
-  const Baked baked(std::move(b.scene), 96, high(4096));
+  const Baked baked(std::move(b.scene), 192, high(4096));
   const Deviation d = deviation(baked, upper, upper + 1, [&](const Vec3& p) {
     return sent * (cornerAbove(p.x, p.z, 1) + cornerAbove(1 - p.x, p.z, 1) + cornerAbove(p.x, 1 - p.z, 1) +
                    cornerAbove(1 - p.x, 1 - p.z, 1));
@@ -100,7 +100,7 @@ TEST(BakeTruth, Hard8APerpendicularPlateIsLitByTheOtherWithinHalfAPercent) {
   b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
   const int wall = b.quad(Builder::matte(kNearlyBlack), Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0));
   addSun(b, Vec3(0, -1, 0));
-  const Baked baked(std::move(b.scene), 96, high(4096));
+  const Baked baked(std::move(b.scene), 192, high(4096));
   const Deviation d = deviation(baked, wall, wall + 1, [](const Vec3& p) {
     return 0.5 * 4 * (cornerBeside(1, p.x, p.y) + cornerBeside(1, 1 - p.x, p.y));
   });
@@ -145,13 +145,13 @@ TEST(BakeTruth, ARoughMetalAndAGlossyWallAgreeWithPathsWithinOnePercent) {
   glossy.roughness = 0.3f;
   b.scene.materials[static_cast<std::size_t>(b.scene.objects[4].material)] = glossy;
   b.quad(Builder::matte(0, Vec3(10)), Vec3(0.3f, 0.99f, 0.3f), Vec3(0.4f, 0, 0), Vec3(0, 0, 0.4f));
-  const Baked baked(std::move(b.scene), 96, high(1 << 21));
+  const Baked baked(std::move(b.scene), 64, high(1 << 21));
   PathOptions paths;
-  paths.samplesPerPixel = 1024;
+  paths.samplesPerPixel = 512;
   paths.bounces = 64;
   double map = 0, path = 0;
   RayCounters counters;
-  const std::vector<SurfacePoint> points = surfacePoints(baked.world(), 192, 1);
+  const std::vector<SurfacePoint> points = surfacePoints(baked.world(), 128, 1);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     map += mapIrradiance(baked.world(), points[i]).y;
     path += pathIrradiance(baked.world(), points[i], i, paths, counters).mean.y;
