@@ -21,7 +21,6 @@ constexpr float kDirectConfidence = 0.4f;
 constexpr double kDirectEnough = 40000;  // 0.5 % noise
 constexpr int kDirectMaxRadius = 3;      // texels
 // Gathered light is smooth, its rays are few and now and then meet something bright.
-constexpr float kGatherConfidence = 1.5f;
 constexpr int kGatherMaxRadius = 11;    // texels
 constexpr int kGatherPooledRadius = 4;  // texels
 
@@ -31,10 +30,14 @@ struct Preset {
   int causticShare;       ///< of 256 photons, those that are followed to the first diffuse surface only
   int directSamples;
   int gatherRays;
+  /// Of the smoothing of gathered light: the more evenly rays lie, the more their spread overstates the
+  /// error.
+  float gatherConfidence;
 };
 // High is what keeps the errors of known scenes (bake_truth_test.cpp) below half a percent.
-constexpr Preset kPresets[] = {
-    {"preview", 1 << 18, 0, 4, 0}, {"medium", 1 << 20, 192, 16, 8}, {"high", 1 << 23, 240, 64, 128}};
+constexpr Preset kPresets[] = {{"preview", 1 << 18, 0, 4, 0, 0},
+                               {"medium", 1 << 20, 192, 16, 8, 1.5f},
+                               {"high", 1 << 23, 240, 64, 128, 0.7f}};
 
 using Clock = std::chrono::steady_clock;
 // Shares of a bake's time, measured in the bundled scenes; only the guess until a stage's own pace is known.
@@ -74,9 +77,9 @@ DensityOptions smoothingOfDirect() {
   return smoothing;
 }
 
-DensityOptions smoothingOfGathered() {
+DensityOptions smoothingOfGathered(float confidence) {
   DensityOptions smoothing;
-  smoothing.confidence = kGatherConfidence;
+  smoothing.confidence = confidence;
   smoothing.doubt = 0;
   smoothing.maxRadius = kGatherMaxRadius;
   smoothing.pooledRadius = kGatherPooledRadius;
@@ -325,7 +328,8 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
   const std::vector<DensityEstimate> caustic = causticLight(layer, part(progress, 0.3, 0.6));
   const std::vector<DensityEstimate> indirect =
       gatherRays_ == 0 ? indirectLight(layer, part(progress, 0.6, 1))
-                       : smooth(texels_, open_.areas(layer), gathered_[index], smoothingOfGathered(),
+                       : smooth(texels_, open_.areas(layer), gathered_[index],
+                                smoothingOfGathered(presetOf(options_.quality).gatherConfidence),
                                 options_.threads, part(progress, 0.6, 1));
   std::vector<Vec3> irradiance(texels_.texelCount());
   for (std::size_t i = 0; i < irradiance.size(); ++i)
