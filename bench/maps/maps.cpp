@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <thread>
 
 #include "app/cli/console.h"
@@ -13,6 +12,7 @@
 #include "bench/maps/gathered_maps.h"
 #include "bench/maps/map_error.h"
 #include "bench/maps/point_reference.h"
+#include "bench/maps/soonness.h"
 #include "bench/maps/worst_points.h"
 #include "bench/peers/curve.h"
 #include "raytrace/bake/baker.h"
@@ -65,32 +65,6 @@ std::string shortNumber(double x) {
   std::snprintf(text, sizeof text, "%g", x);
   return text;
 }
-
-/// The seconds to an error, or the status that says why there are none.
-struct Soonness {
-  std::optional<Reached> ours, gather;
-  double gatherLasted = 0;  ///< its last point: it is not there before
-
-  Record record() const {
-    Record r;
-    if (!ours) {
-      r.labels["status"] = "not reached";
-      return r;
-    }
-    r.values["seconds_ours"] = Value::seconds({ours->seconds});
-    r.values["seconds_gather"] = Value::seconds({gather ? gather->seconds : gatherLasted});
-    r.values["time_over_gather"] =
-        Value::ratio({ours->seconds / r.values["seconds_gather"].median}, Better::lower);
-    if (ours->atMost) {
-      r.labels["status"] = "at most: our cheapest maps are better";
-    } else if (!gather) {
-      r.labels["status"] = "at most: the gather was stopped before it got there";
-    } else if (gather->atMost) {
-      r.labels["status"] = "the gather's first path is good enough";
-    }
-    return r;
-  }
-};
 
 /// All figures of one scene. Main thread only.
 class MapsOfScene {
@@ -265,12 +239,9 @@ class MapsOfScene {
   }
 
   void reportSoonness(double error) {
-    const Soonness soonness{secondsToError(ours_, error), secondsToError(gather_, error),
-                            gather_.back().seconds};
-    Record record = soonness.record();
+    Record record = soonness(ours_, gather_, error);
     record.key = keyOf("to-" + shortNumber(error));
     record.labels["scene"] = name_;
-    record.at = {{"relerr", error}};
     session_.add(record, &watch_);
   }
 

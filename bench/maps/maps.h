@@ -11,7 +11,7 @@ namespace saccade::bench {
 ///
 /// Keys, under "maps/SCENE/": QUALITY, QUALITY-x4 (four times the particles), gather@4paths: points of the
 /// curves, with relerr (map_error.h); reference: its own noise; to-0.05: seconds to that error of both and
-/// their quotient; cycles: Blender's bake, cornell_glossy alone; particles, direct, indirect: rates (see
+/// their quotient; cycles: Blender's bake, cornell_glossy alone; rate-STAGE (see
 /// bake_rates.h). OUT/maps/SCENE-QUALITY-worst.csv names the points that are farthest off.
 ///
 /// Scenes of another person (shared folder, --scene) are left out with a line where they are absent.

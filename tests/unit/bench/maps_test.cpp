@@ -11,6 +11,7 @@
 #include "bench/maps/gathered_maps.h"
 #include "bench/maps/map_error.h"
 #include "bench/maps/point_reference.h"
+#include "bench/maps/soonness.h"
 #include "bench/maps/worst_points.h"
 #include "bench/reference/reference.h"
 #include "raytrace/bake/charts.h"
@@ -55,6 +56,28 @@ TEST(MapError, IsZeroWhereThereIsNoLight) {
   EXPECT_EQ(error.relative, 0);
   EXPECT_EQ(error.dark, 1u);
   EXPECT_EQ(errorOf({}, {}).lit, 0u);
+}
+
+TEST(Soonness, IsExactForErrorsThatFallByAPowerOfTheTime) {
+  // Ours falls as 1 / t, the gather as 1 / sqrt(t): at 0.05 they need 4 and 64 seconds.
+  const std::vector<CurvePoint> ours = {{1, 0.2}, {16, 0.0125}}, gather = {{1, 0.4}, {100, 0.04}};
+  const Record record = soonness(ours, gather, 0.05);
+  EXPECT_NEAR(record.values.at("seconds_ours").median, 4, 1e-9);
+  EXPECT_NEAR(record.values.at("seconds_gather").median, 64, 1e-9);
+  EXPECT_NEAR(record.values.at("time_over_gather").median, 1.0 / 16, 1e-12);
+  EXPECT_EQ(record.at.at("relerr"), 0.05);
+  EXPECT_EQ(record.labels.count("status"), 0u);
+}
+
+TEST(Soonness, IsABoundWhereTheGatherStopsEarlyAndNothingWhereOursDoesNotGetThere) {
+  const std::vector<CurvePoint> ours = {{1, 0.2}, {16, 0.0125}}, gather = {{1, 0.4}, {25, 0.08}};
+  const Record bound = soonness(ours, gather, 0.05);
+  EXPECT_EQ(bound.values.at("seconds_gather").median, 25);
+  EXPECT_NEAR(bound.values.at("time_over_gather").median, 4.0 / 25, 1e-12);
+  EXPECT_EQ(bound.labels.at("status").rfind("at most", 0), 0u);
+  const Record none = soonness(ours, gather, 0.001);
+  EXPECT_TRUE(none.values.empty());
+  EXPECT_EQ(none.labels.at("status"), "not reached");
 }
 
 /// The Cornell room with charts in a small atlas, and maps of nothing but their size.
