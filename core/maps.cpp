@@ -210,6 +210,13 @@ void addEnvironment(ContentHash& hash, const Environment& e) {
   hash.add(e.rotation);
 }
 
+void checkCounts(const Scene& scene, const SceneCharts& charts) {
+  if (charts.meshes.size() == scene.meshes.size() && charts.places.size() == scene.objects.size()) return;
+  throw Error(scene.path + ": the charts are for " + std::to_string(charts.meshes.size()) + " meshes and " +
+              std::to_string(charts.places.size()) + " objects, the scene has " +
+              std::to_string(scene.meshes.size()) + " and " + std::to_string(scene.objects.size()));
+}
+
 }  // namespace
 
 Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
@@ -222,12 +229,7 @@ Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
 }
 
 void applyCharts(Scene& scene, const SceneCharts& charts) {
-  const bool counts =
-      charts.meshes.size() == scene.meshes.size() && charts.places.size() == scene.objects.size();
-  if (!counts)
-    throw Error(scene.path + ": the charts are for " + std::to_string(charts.meshes.size()) + " meshes and " +
-                std::to_string(charts.places.size()) + " objects, the scene has " +
-                std::to_string(scene.meshes.size()) + " and " + std::to_string(scene.objects.size()));
+  checkCounts(scene, charts);
   for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
     Mesh& mesh = scene.meshes[m];
     const MeshCharts& c = charts.meshes[m];
@@ -236,8 +238,17 @@ void applyCharts(Scene& scene, const SceneCharts& charts) {
                                   [&](std::uint32_t v) { return v < mesh.positions.size(); });
     if (!fits) throw Error(scene.path + ": the charts of mesh " + std::to_string(m) + " do not fit it");
     mesh = gatherVertices(mesh, c.sourceVertex);
-    mesh.lightmapUv = c.uv;
     mesh.indices = c.indices;
+  }
+  placeCharts(scene, charts);
+}
+
+void placeCharts(Scene& scene, const SceneCharts& charts) {
+  checkCounts(scene, charts);
+  for (std::size_t m = 0; m < charts.meshes.size(); ++m) {
+    if (charts.meshes[m].uv.size() != scene.meshes[m].positions.size())
+      throw Error(scene.path + ": the charts of mesh " + std::to_string(m) + " do not fit it");
+    scene.meshes[m].lightmapUv = charts.meshes[m].uv;
   }
   for (std::size_t o = 0; o < charts.places.size(); ++o)
     scene.objects[o].lightmapScaleOffset = charts.places[o];

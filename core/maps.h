@@ -45,6 +45,10 @@ struct IlluminationMaps {
 /// building Embree or GL scenes. Throws core::Error when charts and scene do not fit together.
 void applyCharts(Scene& scene, const SceneCharts& charts);
 
+/// Moves the charts of a scene that is cut already to other places: takes uv and places only. The same charts
+/// otherwise. Throws core::Error when charts and scene do not fit together. See World::refreshCharts.
+void placeCharts(Scene& scene, const SceneCharts& charts);
+
 /// Hash of all that the maps depend on: geometry, materials, textures, lights, and the format's version.
 std::uint64_t sceneKey(const Scene& scene);
 

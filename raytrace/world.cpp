@@ -72,6 +72,15 @@ void World::addRecords(std::uint32_t o) {
   }
 }
 
+void World::refreshCharts() {
+  for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {
+    const core::Mesh& mesh = meshOf(o);
+    for (std::size_t i = 0; i < mesh.indices.size() && !mesh.lightmapUv.empty(); ++i)
+      records_[firstTriangle_[o] + i / 3].lightmapUv[i % 3] = mesh.lightmapUv[mesh.indices[i]];
+    if (instanceOf(o)) instances_[instanceOf_[o]].lightmapScaleOffset = scene_.objects[o].lightmapScaleOffset;
+  }
+}
+
 void World::placeObjects() {
   objectOfId_.assign(scene_.idCount() + 1, 0);
   for (std::uint32_t o = 0; o < scene_.objects.size(); ++o) {

@@ -95,6 +95,8 @@ class World {
   int recursionDepth() const { return recursionDepth_; }
   const Lights& lights() const { return *lights_; }
 
+  /// Takes the charts' places from the scene again, after core::placeCharts. Not while another thread traces.
+  void refreshCharts();
   /// Irradiance for diffuse hits; the texels are copied into the tracer's layout. Without maps irradiance is
   /// 0. Not while another thread traces.
   void setMaps(const core::IlluminationMaps* maps);

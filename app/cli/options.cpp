@@ -20,6 +20,12 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       ->capture_default_str()
       ->group(group);
   command
+      .add_option("--maps-mb", o.mapsMegabytes,
+                  "Most memory for the texels of illumination maps, MiB, when they have to be baked")
+      ->check(CLI::Range(1, 192))
+      ->capture_default_str()
+      ->group(group);
+  command
       .add_option("--light", o.load.lights,
                   "Add a light: point:pos=x,y,z,power=r,g,b | spot:... | directional:... | "
                   "panel:at=x,y,z,size=w,h,radiance=r,g,b")

@@ -9,6 +9,7 @@
 #include "attention/importance.h"
 #include "core/camera.h"
 #include "core/scene/load.h"
+#include "core/scene/plan.h"
 #include "core/scene/scene.h"
 
 namespace CLI {
@@ -23,6 +24,7 @@ struct SceneOptions {
   std::string mapsFile;            ///< --maps; empty = the cache folder
   std::string quality = "medium";  ///< of the implicit bake
   std::uint64_t photons = 0;       ///< 0 = what the quality says
+  int mapsMegabytes = core::kMapsMegabytes;
 };
 
 struct CameraOptions {

@@ -8,18 +8,18 @@
 #include "app/session/lightmap_import.h"
 #include "app/session/long_bake.h"
 #include "raytrace/bake/baker.h"
-#include "raytrace/bake/charts.h"
+#include "raytrace/bake/light_charts.h"
 
 namespace saccade::app {
 
 namespace {
 
-constexpr int kMaxAtlasSize = 4096;
-
 /// Settings that tell maps of one scene apart in the cache folder.
 std::string settingsName(const SceneOptions& options, const BakeRequest& bake) {
   std::string name = options.quality;
   if (options.photons > 0) name += "-" + std::to_string(options.photons);
+  if (options.mapsMegabytes != core::kMapsMegabytes)
+    name += "-" + std::to_string(options.mapsMegabytes) + "mb";
   if (bake.seed != 1) name += "-seed" + std::to_string(bake.seed);
   return name;
 }
@@ -70,6 +70,18 @@ raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Load
   return imported;
 }
 
+/// Charts the scene and builds its world.
+raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
+                                   const std::stop_token& stop) {
+  raytrace::LightCharts charts = raytrace::chartByLight(
+      w.scene, w.plan, {.quality = options.quality, .seed = bake.seed, .threads = bake.threads}, {{}, stop});
+  w.world = std::move(charts.world);
+  spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; direct light misses {:.2g} % by them",
+               charts.atlas.chartCount, charts.atlas.size, charts.atlas.size, charts.finestMetres,
+               charts.coarsestMetres, 100 * charts.relativeError);
+  return std::move(charts.atlas);
+}
+
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
                                const BakeRequest& bake, std::uint64_t key, const std::stop_token& stop) {
   raytrace::BakeOptions bakeOptions;
@@ -110,7 +122,7 @@ core::Scene loadSceneReported(const SceneOptions& options) {
 std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options) {
   auto w = std::make_unique<Workspace>();
   w->scene = loadSceneReported(options);
-  w->plan = core::makePlan(w->scene);
+  w->plan = core::makePlan(w->scene, options.mapsMegabytes);
   w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
   return w;
 }
@@ -119,7 +131,7 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
                                          const std::stop_token& stop) {
   auto w = std::make_unique<Workspace>();
   w->scene = loadSceneReported(options);
-  w->plan = core::makePlan(w->scene);
+  w->plan = core::makePlan(w->scene, options.mapsMegabytes);
   const std::uint64_t key = core::sceneKey(w->scene);
   const std::filesystem::path file = mapsPath(key, options, bake);
   const bool namedByUser = !bake.file.empty() || !options.mapsFile.empty();
@@ -134,9 +146,7 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     if (!bake.always)
       spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
                    file.string());
-    raytrace::ChartAtlas atlas = raytrace::makeCharts(w->scene, w->plan, kMaxAtlasSize);
-    core::applyCharts(w->scene, atlas.charts);
-    w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
+    raytrace::ChartAtlas atlas = chartReported(*w, options, bake, stop);
     w->maps = bakeNow(*w, std::move(atlas), options, bake, key, stop);
     store(file, w->maps, namedByUser);
   }

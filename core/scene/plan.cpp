@@ -18,9 +18,10 @@ constexpr int kDepthOpaque = 4, kDepthRefraction = 8, kDepthPerObject = 2, kDept
 /// Perceptual roughness below which a lobe is followed as a mirror.
 constexpr float kMirrorRoughness = 0.03f;
 
-// Lightmap: texels a 512th of the scene's diagonal wide, charts fill about this part of the atlas.
-constexpr double kTexelsPerDiagonal = 512, kAtlasFill = 0.65;
-constexpr int kSmallestMap = 128, kLargestMap = 2048, kMapStep = 64;
+// Illumination maps: texels between these parts of the scene's diagonal.
+constexpr double kCoarsestPart = 1.0 / 128, kFinestPart = 1.0 / 16384;
+constexpr double kBytesPerTexel = 6;  // three halves
+constexpr int kSmallestMap = 64, kLargestMap = 4096, kMapStep = 64;
 
 std::string number(double x) {
   char text[32];
@@ -80,13 +81,14 @@ Census count(const Scene& scene) {
   return c;
 }
 
-void sizeLightmap(const Scene& scene, const Census& c, Plan& plan) {
+void sizeLightmap(const Scene& scene, const Census& c, int megabytes, Plan& plan) {
   if (!(c.area > 0)) return;
-  const double wanted = static_cast<double>(scene.bounds.diagonal()) / kTexelsPerDiagonal;
-  const double side = std::sqrt(c.area / kAtlasFill) / wanted;
-  const double stepped = std::ceil(std::clamp(side, 1.0, 1e6) / kMapStep) * kMapStep;
-  plan.lightmapSize = std::clamp(static_cast<int>(stepped), kSmallestMap, kLargestMap);
-  plan.texelSizeMetres = static_cast<float>(std::sqrt(c.area / kAtlasFill) / plan.lightmapSize);
+  const double diagonal = static_cast<double>(scene.bounds.diagonal());
+  plan.coarsestTexel = static_cast<float>(diagonal * kCoarsestPart);
+  plan.finestTexel = static_cast<float>(diagonal * kFinestPart);
+  const double texels = megabytes * double{1 << 20} / (kBytesPerTexel * (plan.doubleSided ? 2 : 1));
+  const int stepped = static_cast<int>(std::min(std::sqrt(texels), 1e6)) / kMapStep * kMapStep;
+  plan.lightmapSize = std::clamp(stepped, kSmallestMap, kLargestMap);
 }
 
 std::string describe(const Environment& e) {
@@ -96,7 +98,7 @@ std::string describe(const Environment& e) {
          " degrees: lights the scene and shows behind it";
 }
 
-void describe(const Scene& scene, const Census& c, Plan& plan) {
+void describe(const Scene& scene, const Census& c, int mapsMegabytes, Plan& plan) {
   const auto line = [&](const char* stage, bool on, const std::string& yes, const std::string& no) {
     plan.lines.push_back({stage, on, on ? yes : no});
   };
@@ -135,8 +137,10 @@ void describe(const Scene& scene, const Census& c, Plan& plan) {
        "no object needs an id");
   const std::string size = std::to_string(plan.lightmapSize);
   line("illumination maps", plan.lightmapSize > 0,
-       size + "x" + size + (plan.doubleSided ? " in 2 layers" : "") + ", texels of " +
-           number(static_cast<double>(plan.texelSizeMetres)) + " m for " + number(c.area) + " m2 of surface",
+       "at most " + size + "x" + size + (plan.doubleSided ? " in 2 layers" : "") + " by the cap of " +
+           std::to_string(mapsMegabytes) + " MiB, for " + number(c.area) + " m2 of surface; texels from " +
+           number(static_cast<double>(plan.finestTexel)) + " to " +
+           number(static_cast<double>(plan.coarsestTexel)) + " m, as light varies",
        "no surface");
   const std::size_t lights = scene.lights.size() + c.emitting;
   line("environment", scene.environment != nullptr, scene.environment ? describe(*scene.environment) : "",
@@ -188,7 +192,7 @@ float nonDiffuseAlbedo(const Scene& scene, const Material& material) {
   return std::clamp(coverage * lobes + (1 - coverage), 0.0f, 1.0f);
 }
 
-Plan makePlan(const Scene& scene) {
+Plan makePlan(const Scene& scene, int mapsMegabytes) {
   const Census c = count(scene);
   Plan plan;
   plan.corrections = c.nonDiffuse > 0;
@@ -205,8 +209,8 @@ Plan makePlan(const Scene& scene) {
         kDepthLargest,
         kDepthRefraction + kDepthPerObject * static_cast<int>(std::min<std::size_t>(c.transmitting - 1, 2)));
   if (c.diffuseArea > 0) plan.diffuseEnergyLeftOut = c.leftOut / c.diffuseArea;
-  sizeLightmap(scene, c, plan);
-  describe(scene, c, plan);
+  sizeLightmap(scene, c, mapsMegabytes, plan);
+  describe(scene, c, mapsMegabytes, plan);
   return plan;
 }
 

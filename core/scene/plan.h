@@ -24,13 +24,17 @@ struct Plan {
   bool normalMaps = false;
   bool doubleSided = false;  ///< maps need a back layer
   int recursionDepth = 0;    ///< longest specular chain followed
-  int lightmapSize = 0;      ///< atlas side in texels
-  float texelSizeMetres = 0;
+  int lightmapSize = 0;      ///< largest atlas side in texels, by the memory that maps may take
+  float finestTexel = 0, coarsestTexel = 0;  ///< metres, between which a bake chooses
   double diffuseEnergyLeftOut = 0;  ///< area-weighted mean non-Lambert albedo of objects treated as diffuse
   std::vector<PlanLine> lines;      ///< for `saccade info`
 };
 
-Plan makePlan(const Scene& scene);
+/// What the texels of illumination maps may take unless the user says otherwise, MiB.
+inline constexpr int kMapsMegabytes = 64;
+
+/// `mapsMegabytes`: most memory for the texels of illumination maps, MiB; 6 bytes a texel and layer.
+Plan makePlan(const Scene& scene, int mapsMegabytes = kMapsMegabytes);
 
 /// Cosine-averaged albedo of a material's lobes other than Lambert, textures averaged; [0, 1].
 float nonDiffuseAlbedo(const Scene& scene, const Material& material);

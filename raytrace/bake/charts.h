@@ -33,7 +33,7 @@ struct ChartAtlas {
 bool showsIrradiance(const core::Material& material);
 
 /// Charts for every mesh of a loaded, not yet charted scene; uniform texel density from the total surface
-/// area, not finer than plan.texelSizeMetres, in an atlas of plan.lightmapSize (0: 1024) texels. Between
+/// area, in an atlas of plan.lightmapSize (0: 1024) texels. Between
 /// charts lie two empty texels. The atlas doubles, up to maxAtlasSize, when its charts are so many that they
 /// would cost more than half of the density. Deterministic; about a microsecond per triangle and core. Throws
 /// core::Error when even one texel a chart does not fit maxAtlasSize.

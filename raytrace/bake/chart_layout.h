@@ -1,0 +1,91 @@
+// The charts of a scene and their places in a square atlas (see charts.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/maps.h"
+#include "core/scene/scene.h"
+#include "raytrace/bake/chart_clusters.h"
+
+namespace saccade::raytrace {
+
+/// What has a texel density of its own: a chart of a mesh that one object uses, or all charts of an object
+/// that shares its mesh.
+struct LayoutItem {
+  double rectangle = 0;      ///< m^2 that its charts' rectangles take
+  double largestExtent = 0;  ///< m, of a chart
+};
+
+/// Not movable while others refer to it; const functions from any thread.
+class ChartLayout {
+ public:
+  /// Cuts the meshes of a loaded, not yet charted scene, about a microsecond per triangle. `scene` must
+  /// outlive it; it may be charted meanwhile.
+  explicit ChartLayout(const core::Scene& scene);
+
+  std::size_t chartCount() const { return count_ + (shared_ ? 1 : 0); }
+  const std::vector<LayoutItem>& items() const { return items_; }
+  /// Of an object that shows irradiance.
+  std::size_t itemOf(std::size_t object, std::size_t triangle) const;
+
+  /// Texels that all rectangles and their borders take; `texelMetres`: by item, > 0. Slow neither way: no
+  /// packing.
+  double texelCount(std::span<const double> texelMetres);
+  /// Gives everything its place; false when size x size texels do not suffice.
+  bool pack(std::span<const double> texelMetres, int size);
+
+  /// For core::applyCharts, as packed last. Of a scene that is charted already only uv and places count.
+  core::SceneCharts cut(int size) const;
+
+ private:
+  /// A rectangle of texels, its border included.
+  struct Place {
+    int width = 0, height = 0, x = 0, y = 0;
+  };
+  struct PlacedChart {
+    Chart chart;
+    Place place;  ///< in the atlas, or in the block of an instanced mesh
+  };
+  /// The charts of an instanced mesh, packed.
+  struct Block {
+    std::uint32_t mesh = 0;
+    int width = 0, height = 0;
+  };
+  /// A lit object of an instanced mesh.
+  struct PlacedBlock {
+    std::size_t object = 0, block = 0;
+    double unit = 0;  ///< metres in the world per unit of the mesh
+    int scale = 1;    ///< texels a texel of the block takes, a power of two
+    Place place;
+  };
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  bool isLit(const core::Object& object) const;
+  void addInstance(std::size_t o, std::size_t& block);
+  std::vector<PlacedChart>& clustered(std::uint32_t mesh);
+  void addItem(const std::vector<PlacedChart>& charts, std::size_t first, std::size_t last, double unit);
+  void size(std::span<const double> texelMetres);
+  bool packBlock(Block& block, int size);
+  static bool packRects(const std::vector<Place*>& places, int width, int height);
+  static core::Vec2 atlasUv(const PlacedChart& placed, const core::Vec3& position, int size);
+  static core::MeshCharts cutMesh(const core::Mesh& mesh, const std::vector<PlacedChart>& charts, int size);
+  static core::MeshCharts wholeMesh(const core::Mesh& mesh, const core::Vec2& uv);
+
+  const core::Scene& scene_;
+  std::vector<std::vector<PlacedChart>> charts_;             ///< by mesh
+  std::vector<std::vector<std::uint32_t>> chartOfTriangle_;  ///< by mesh
+  std::vector<LayoutItem> items_;
+  std::vector<std::size_t> firstItem_;  ///< by object
+  std::vector<std::uint32_t> order_;    ///< meshes in world space, in the order of their objects
+  std::vector<std::size_t> orderItem_;  ///< their first items
+  std::vector<Block> blocks_;
+  std::vector<PlacedBlock> instances_;
+  bool shared_ = false;  ///< some object shows no irradiance: all those share a texel
+  Place sharedPlace_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace saccade::raytrace

@@ -1,0 +1,130 @@
+#include "raytrace/bake/light_charts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/bake/chart_layout.h"
+#include "raytrace/bake/light_variation.h"
+#include "raytrace/bake/texel_density.h"
+#include "raytrace/bake/texel_map.h"
+
+namespace saccade::raytrace {
+namespace {
+
+/// What a quality wants of its texels.
+struct Wish {
+  const char* quality;
+  double relativeError;
+  double texels;    ///< at most, the plan's cap apart: what the time of a bake goes by
+  double coarsest;  ///< of plan.coarsestTexel: indirect light wants this much everywhere
+};
+constexpr Wish kWishes[] = {
+    {"preview", 0.08, 1 << 18, 1}, {"medium", 0.02, 3 << 19, 0.5}, {"high", 0.008, 1 << 24, 0.25}};
+
+constexpr int kProbeSize = 512;          // atlas side of the even charts in which light is measured
+constexpr double kProbeFill = 0.8;       // of it
+constexpr double kProbeTexels = 1 << 20; // the middle distance of a probe: texels of an atlas of so many
+constexpr int kSizeStep = 64;            // atlas sides are multiples of it
+constexpr double kMostFill = 0.95;       // a packing's at best
+
+const Wish& wishOf(const std::string& quality) {
+  for (const Wish& w : kWishes) {
+    if (quality == w.quality) return w;
+  }
+  throw core::UsageError("unknown quality '" + quality + "': use preview, medium or high");
+}
+
+/// Packs into the smallest atlas that holds it, not larger than `largest`; 0 when that does not.
+int packSmallest(ChartLayout& layout, const std::vector<double>& texelMetres, int largest) {
+  const double side = std::sqrt(layout.texelCount(texelMetres) / kMostFill);
+  int size = static_cast<int>(std::ceil(std::clamp(side / kSizeStep, 1.0, 1e5))) * kSizeStep;
+  for (;; size += kSizeStep) {
+    if (layout.pack(texelMetres, std::min(size, largest))) return std::min(size, largest);
+    if (size >= largest) return 0;
+  }
+}
+
+/// Some rectangle has more than one texel yet.
+bool canCoarsen(const ChartLayout& layout, const std::vector<double>& texelMetres) {
+  for (std::size_t i = 0; i < texelMetres.size(); ++i) {
+    if (texelMetres[i] < 2 * layout.items()[i].largestExtent) return true;
+  }
+  return false;
+}
+
+/// Coarsens all texels alike until they fit; returns the atlas side.
+int packWithin(ChartLayout& layout, std::vector<double>& texelMetres, int largest) {
+  constexpr double kStep = 1.03;
+  for (;;) {
+    const int size = packSmallest(layout, texelMetres, largest);
+    if (size > 0) return size;
+    if (!canCoarsen(layout, texelMetres)) {
+      throw core::Error("illumination maps: " + std::to_string(layout.chartCount()) +
+                        " charts do not fit an atlas of " + std::to_string(largest) + " x " +
+                        std::to_string(largest) +
+                        " texels; join vertices of the scene's meshes or allow more with --maps-mb");
+    }
+    for (double& h : texelMetres) h *= kStep;
+  }
+}
+
+double rectangleOf(const ChartLayout& layout) {
+  double sum = 0;
+  for (const LayoutItem& item : layout.items()) sum += item.rectangle;
+  return sum;
+}
+
+VariationOptions probesOf(const ChartLayout& layout, const LightChartOptions& options) {
+  VariationOptions probes;
+  const double middle = std::sqrt(rectangleOf(layout) / kProbeTexels);
+  probes.metres = {4 * middle, middle, middle / 4};
+  probes.seed = options.seed;
+  probes.threads = options.threads;
+  return probes;
+}
+
+}  // namespace
+
+LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const LightChartOptions& options,
+                         const core::Progress& progress) {
+  const Wish& wish = wishOf(options.quality);
+  ChartLayout layout(scene);
+  const double even = std::max(std::sqrt(rectangleOf(layout) / kProbeFill) / kProbeSize, 1e-9);
+  std::vector<double> sides(layout.items().size(), even);
+  LightCharts out;
+  out.atlas.chartCount = layout.chartCount();
+  const int probeSize = packWithin(layout, sides, plan.lightmapSize);
+  out.atlas.charts = layout.cut(probeSize);
+  core::applyCharts(scene, out.atlas.charts);
+  out.world = std::make_unique<World>(scene, plan);
+
+  const VariationOptions probes = probesOf(layout, options);
+  const TexelMap texels(scene, probeSize);
+  const std::vector<LightVariation> variation =
+      measureVariation(*out.world, texels, layout, probes, progress);
+  DensityGoal goal;
+  goal.relativeError = wish.relativeError;
+  const double cap = static_cast<double>(plan.lightmapSize) * plan.lightmapSize;
+  goal.mostTexels = std::min(wish.texels, kMostFill * cap);
+  goal.coarsest = wish.coarsest * static_cast<double>(plan.coarsestTexel);
+  goal.finest = static_cast<double>(plan.finestTexel);
+  DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);
+  out.relativeError = choice.relativeError;
+  out.atlas.size = packWithin(layout, choice.texelMetres, plan.lightmapSize);
+  if (!choice.texelMetres.empty()) {
+    const auto [finest, coarsest] =
+        std::minmax_element(choice.texelMetres.begin(), choice.texelMetres.end());
+    out.finestMetres = static_cast<float>(*finest);
+    out.coarsestMetres = static_cast<float>(*coarsest);
+  }
+  out.atlas.texelMetres = out.coarsestMetres;
+  core::SceneCharts placed = layout.cut(out.atlas.size);
+  for (std::size_t m = 0; m < placed.meshes.size(); ++m)
+    out.atlas.charts.meshes[m].uv = std::move(placed.meshes[m].uv);
+  out.atlas.charts.places = std::move(placed.places);
+  core::placeCharts(scene, out.atlas.charts);
+  out.world->refreshCharts();
+  return out;
+}
+
+}  // namespace saccade::raytrace
