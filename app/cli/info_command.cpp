@@ -86,7 +86,7 @@ void print(const core::Scene& scene, const core::Plan& plan) {
 
 int info(const SceneOptions& options, bool json) {
   const core::Scene scene = core::loadScene(options.path, options.load);
-  const core::Plan plan = core::makePlan(scene, o.mapsMegabytes);
+  const core::Plan plan = core::makePlan(scene, options.mapsMegabytes);
   if (json) {
     std::printf("%s\n", describe(scene, plan).dump(2).c_str());
   } else {

@@ -6,14 +6,13 @@
 #include "core/composite.h"
 #include "core/metrics/comparison.h"
 #include "raytrace/bake/baker.h"
-#include "raytrace/bake/charts.h"
+#include "raytrace/bake/light_charts.h"
 #include "raytrace/reference.h"
 
 namespace saccade::bench {
 namespace {
 
 constexpr app::ImageSize kSize{512, 512};
-constexpr int kMaxAtlas = 2048;
 constexpr int kMinSamples = 10;                            // N_min
 constexpr double kPaperLevels12 = 58, kPaperLevel3 = 188;  ///< new samples in the paper's c) and d)
 /// Of the way to what it looks at, that the camera goes to zoom in.
@@ -28,14 +27,15 @@ std::unique_ptr<Stage> openScene(core::Scene scene, std::uint32_t seed, const st
   app::Workspace& w = *stage->workspace;
   w.scene = std::move(scene);
   w.plan = core::makePlan(w.scene);
-  raytrace::ChartAtlas atlas = raytrace::makeCharts(w.scene, w.plan, kMaxAtlas);
-  core::applyCharts(w.scene, atlas.charts);
-  w.world = std::make_unique<raytrace::World>(w.scene, w.plan);
   raytrace::BakeOptions bake;
   bake.quality = "preview";
+  raytrace::LightCharts charts = raytrace::chartByLight(
+      w.scene, w.plan, {.quality = bake.quality, .seed = seed, .threads = stage->cores}, {nullptr, stop});
+  w.world = std::move(charts.world);
   bake.seed = seed;
   bake.threads = stage->cores;
-  w.maps = raytrace::bakeMaps(*w.world, std::move(atlas.charts), atlas.size, bake, {nullptr, stop});
+  w.maps =
+      raytrace::bakeMaps(*w.world, std::move(charts.atlas.charts), charts.atlas.size, bake, {nullptr, stop});
   w.world->setMaps(&w.maps);
   stage->gl = std::make_unique<app::Headless>(app::RunOptions{}, w);
   return stage;

@@ -21,11 +21,11 @@ struct Wish {
 constexpr Wish kWishes[] = {
     {"preview", 0.08, 1 << 18, 1}, {"medium", 0.02, 3 << 19, 0.5}, {"high", 0.008, 1 << 24, 0.25}};
 
-constexpr int kProbeSize = 512;          // atlas side of the even charts in which light is measured
-constexpr double kProbeFill = 0.8;       // of it
-constexpr double kProbeTexels = 1 << 20; // the middle distance of a probe: texels of an atlas of so many
-constexpr int kSizeStep = 64;            // atlas sides are multiples of it
-constexpr double kMostFill = 0.95;       // a packing's at best
+constexpr int kProbeSize = 512;           // atlas side of the even charts in which light is measured
+constexpr double kProbeFill = 0.8;        // of it
+constexpr double kProbeTexels = 1 << 20;  // the middle distance of a probe: texels of an atlas of so many
+constexpr int kSizeStep = 64;             // atlas sides are multiples of it
+constexpr double kMostFill = 0.95;        // a packing's at best
 
 const Wish& wishOf(const std::string& quality) {
   for (const Wish& w : kWishes) {
@@ -93,7 +93,8 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   std::vector<double> sides(layout.items().size(), even);
   LightCharts out;
   out.atlas.chartCount = layout.chartCount();
-  const int probeSize = packWithin(layout, sides, plan.lightmapSize);
+  const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
+  const int probeSize = packWithin(layout, sides, largest);
   out.atlas.charts = layout.cut(probeSize);
   core::applyCharts(scene, out.atlas.charts);
   out.world = std::make_unique<World>(scene, plan);
@@ -104,16 +105,15 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
       measureVariation(*out.world, texels, layout, probes, progress);
   DensityGoal goal;
   goal.relativeError = wish.relativeError;
-  const double cap = static_cast<double>(plan.lightmapSize) * plan.lightmapSize;
+  const double cap = static_cast<double>(largest) * largest;
   goal.mostTexels = std::min(wish.texels, kMostFill * cap);
-  goal.coarsest = wish.coarsest * static_cast<double>(plan.coarsestTexel);
+  goal.coarsest = plan.coarsestTexel > 0 ? wish.coarsest * static_cast<double>(plan.coarsestTexel) : even;
   goal.finest = static_cast<double>(plan.finestTexel);
   DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);
   out.relativeError = choice.relativeError;
-  out.atlas.size = packWithin(layout, choice.texelMetres, plan.lightmapSize);
+  out.atlas.size = packWithin(layout, choice.texelMetres, largest);
   if (!choice.texelMetres.empty()) {
-    const auto [finest, coarsest] =
-        std::minmax_element(choice.texelMetres.begin(), choice.texelMetres.end());
+    const auto [finest, coarsest] = std::minmax_element(choice.texelMetres.begin(), choice.texelMetres.end());
     out.finestMetres = static_cast<float>(*finest);
     out.coarsestMetres = static_cast<float>(*coarsest);
   }

@@ -89,8 +89,8 @@ class DirectProbe {
     if (!(up > 0) || !world_.intersect(at.leave(direction), hit, counters_)) return 0;
     if (world_.record(hit.triangle).light < 0) return 0;
     const Surface met = makeSurface(world_, hit, direction);
-    const float pdf = world_.lights().pdf(choice, hit.triangle, direction,
-                                          glm::length(met.position - at.position));
+    const float pdf =
+        world_.lights().pdf(choice, hit.triangle, direction, glm::length(met.position - at.position));
     return core::luminance(met.emitted()) * core::kPi * weight(up / core::kPi, pdf);
   }
 
@@ -164,8 +164,7 @@ Probe probe(const World& world, const TexelMap& texels, const ItemSurface& item,
     out.square[d] = std::numeric_limits<double>::quiet_NaN();
     if (!before || !behind) continue;
     out.square[d] = 1;
-    for (int s = 0; s < 2; ++s)
-      out.square[d] *= sets[s].at(*before) - 2 * middle[s] + sets[s].at(*behind);
+    for (int s = 0; s < 2; ++s) out.square[d] *= sets[s].at(*before) - 2 * middle[s] + sets[s].at(*behind);
   }
   return out;
 }
@@ -202,10 +201,10 @@ std::vector<LightVariation> measureVariation(const World& world, const TexelMap&
   std::vector<std::uint32_t> itemOf;
   for (std::size_t i = 0; i < items.size(); ++i) {
     const double share = total > 0 ? items[i].area() / total : 0;
-    const std::size_t points = items[i].entries.empty()
-                                   ? 0
-                                   : options.pointsPerItem + static_cast<std::size_t>(
-                                                                 share * static_cast<double>(options.points));
+    const std::size_t points =
+        items[i].entries.empty()
+            ? 0
+            : options.pointsPerItem + static_cast<std::size_t>(share * static_cast<double>(options.points));
     itemOf.insert(itemOf.end(), points, static_cast<std::uint32_t>(i));
     first.push_back(itemOf.size());
   }

@@ -51,8 +51,7 @@ class Chooser {
     mean_ = area_ > 0 ? flux / area_ : 0;
     const double floor = 1e-8 * mean_ * mean_;
     for (std::size_t i = 0; i < variation.size(); ++i) {
-      items_.push_back(
-          {variation[i].area, layout.items()[i].rectangle, fit(variation[i], metres, floor)});
+      items_.push_back({variation[i].area, layout.items()[i].rectangle, fit(variation[i], metres, floor)});
     }
   }
 
@@ -90,9 +89,9 @@ class Chooser {
     out.reserve(items_.size());
     for (const Item& i : items_) {
       const double weight = i.area * i.law.factor * i.law.power;
-      const double h = weight > 0
-                           ? std::pow(2 * std::exp(logMultiplier) * i.rectangle / weight, 1 / (i.law.power + 2))
-                           : goal_.coarsest;
+      const double h =
+          weight > 0 ? std::pow(2 * std::exp(logMultiplier) * i.rectangle / weight, 1 / (i.law.power + 2))
+                     : goal_.coarsest;
       out.push_back(std::clamp(h, goal_.finest, goal_.coarsest));
     }
     return out;

@@ -17,7 +17,7 @@ namespace saccade::raytrace {
 struct DensityGoal {
   /// Wished for: root mean square of what texels miss of direct light, over its mean.
   double relativeError = 0.02;
-  double mostTexels = 1 << 20;  ///< rectangles and borders; comes before the error
+  double mostTexels = 1 << 20;      ///< rectangles and borders; comes before the error
   double coarsest = 1, finest = 0;  ///< metres
 };
 

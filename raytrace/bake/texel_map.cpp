@@ -135,6 +135,33 @@ void TexelMap::cover() {
   for (const Placed& p : placed) fragments_[count[p.texel]++] = p.fragment;
 }
 
+/// The fragment's polygon in the atlas, in texels.
+CellPolygon TexelMap::clipped(const TexelFragment& fragment, std::size_t texel) const {
+  const std::size_t corner = std::size_t{3} * fragment.triangle;
+  return clipToCell(texelPosition(scene_, fragment.object, corner, size_),
+                    texelPosition(scene_, fragment.object, corner + 1, size_),
+                    texelPosition(scene_, fragment.object, corner + 2, size_),
+                    static_cast<int>(texel % static_cast<std::size_t>(size_)),
+                    static_cast<int>(texel / static_cast<std::size_t>(size_)));
+}
+
+TexelCover TexelMap::coverOf(std::size_t texel) const {
+  Plane2 moment(0);
+  double twice = 0;
+  for (const TexelFragment& f : fragments(texel)) {
+    const CellPolygon cell = clipped(f, texel);
+    for (int i = 1; i + 1 < cell.count; ++i) {
+      const Plane2 e = cell.corner[i] - cell.corner[0], g = cell.corner[i + 1] - cell.corner[0];
+      const double area = std::abs(e.x * g.y - e.y * g.x);
+      moment += area / 3 * (cell.corner[0] + cell.corner[i] + cell.corner[i + 1]);
+      twice += area;
+    }
+  }
+  const Plane2 centre(static_cast<double>(texel % static_cast<std::size_t>(size_)) + 0.5,
+                      static_cast<double>(texel / static_cast<std::size_t>(size_)) + 0.5);
+  return {twice > 0 ? moment / twice : centre, 0.5 * twice};
+}
+
 MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const {
   const std::span<const TexelFragment> parts = fragments(texel);
   const TexelFragment* part = &parts.front();
@@ -148,8 +175,7 @@ MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const 
   const Plane2 a = texelPosition(scene_, part->object, corner, size_),
                b = texelPosition(scene_, part->object, corner + 1, size_),
                c = texelPosition(scene_, part->object, corner + 2, size_);
-  const CellPolygon cell = clipToCell(a, b, c, static_cast<int>(texel % static_cast<std::size_t>(size_)),
-                                      static_cast<int>(texel / static_cast<std::size_t>(size_)));
+  const CellPolygon cell = clipped(*part, texel);
   // Choose a triangle of the polygon's fan by area, then a point in it.
   double target = v * cell.twiceArea(), share = 0;
   int fan = 1;

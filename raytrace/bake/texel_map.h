@@ -7,6 +7,7 @@
 
 #include "core/math/types.h"
 #include "core/scene/scene.h"
+#include "raytrace/bake/cell_clip.h"
 
 namespace saccade::raytrace {
 
@@ -22,6 +23,12 @@ struct ChartRect {
   bool doubleSided = false;  ///< its back has its own irradiance, in layer 1
 };
 
+/// The part of a texel that holds surface.
+struct TexelCover {
+  Plane2 centroid{0};  ///< in the atlas, in texels
+  double share = 0;    ///< of the texel
+};
+
 /// A point of a charted mesh.
 struct MeshPoint {
   std::uint32_t object = 0, triangle = 0;
@@ -34,6 +41,7 @@ class TexelMap {
   /// Objects that show no irradiance have no texels. Throws core::Error when a mesh carries no lightmapUv.
   TexelMap(const core::Scene& charted, int size);
 
+  const core::Scene& scene() const { return scene_; }
   int size() const { return size_; }
   std::size_t texelCount() const { return static_cast<std::size_t>(size_) * size_; }
   const std::vector<ChartRect>& charts() const { return charts_; }
@@ -46,6 +54,8 @@ class TexelMap {
   std::span<const TexelFragment> fragments(std::size_t texel) const {
     return {fragments_.data() + first_[texel], fragments_.data() + first_[texel + 1]};
   }
+  /// Exact, from the clipped triangles. The texel must hold some.
+  TexelCover coverOf(std::size_t texel) const;
   /// A point spread evenly over the texel's covered area for (u, v, w) in [0, 1)^3. The texel must hold some.
   MeshPoint pointOn(std::size_t texel, float u, float v, float w) const;
   /// The texel that a point of a charted mesh lies in.
@@ -62,6 +72,7 @@ class TexelMap {
   };
   void findCharts();
   std::vector<Placed> placeFragments() const;
+  CellPolygon clipped(const TexelFragment& fragment, std::size_t texel) const;
   void cover();
 
   const core::Scene& scene_;

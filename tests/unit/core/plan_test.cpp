@@ -65,21 +65,25 @@ TEST(Plan, SeesEveryKindOfMaterial) {
   EXPECT_NE(line(plan, "object ids").reason.find("3 ids"), std::string::npos);
 }
 
-TEST(Plan, LightmapGrowsWithSurfaceAndIsCapped) {
-  const auto sized = [](int copies) {
-    Scene scene;
-    scene.materials = {lambert(), lamp()};
-    Mesh all;
-    for (int i = 0; i < copies; ++i)
-      all = joined(std::move(all), boxMesh(Vec3(0), Vec3(1, 1 + 1e-3f * static_cast<float>(i), 1)));
-    addObject(scene, all, 0, 0);
-    addObject(scene, boxMesh(Vec3(0), Vec3(0.1f)), 1, 1);
-    completeScene(scene, {});
-    return makePlan(scene);
-  };
-  EXPECT_LT(sized(1).lightmapSize, sized(4).lightmapSize);
-  EXPECT_EQ(sized(60).lightmapSize, 2048);
-  EXPECT_EQ(sized(1).lightmapSize % 64, 0);
+TEST(Plan, LightmapStaysWithinItsMemoryAndSaysSo) {
+  Material paper = lambert();
+  paper.doubleSided = true;
+  for (const Material& material : {lambert(), paper}) {
+    const Scene scene = sceneOf({material, lamp()});
+    for (const int megabytes : {1, 7, 64, 192}) {
+      const Plan plan = makePlan(scene, megabytes);
+      const double layers = material.doubleSided ? 2 : 1, side = plan.lightmapSize;
+      EXPECT_LE(6 * layers * side * side, megabytes * double{1 << 20});
+      EXPECT_TRUE(plan.lightmapSize == 4096 ||
+                  6 * layers * (side + 64) * (side + 64) > megabytes * double{1 << 20})
+          << side << " is not the largest multiple of 64 for " << megabytes;
+      EXPECT_EQ(plan.lightmapSize % 64, 0);
+      EXPECT_LT(plan.finestTexel, plan.coarsestTexel);
+      const std::string& reason = line(plan, "illumination maps").reason;
+      EXPECT_NE(reason.find(std::to_string(megabytes) + " MiB"), std::string::npos) << reason;
+      EXPECT_NE(reason.find(std::to_string(plan.lightmapSize)), std::string::npos) << reason;
+    }
+  }
 }
 
 TEST(Plan, EnergyLeftOutIsTheAreaWeightedMean) {
