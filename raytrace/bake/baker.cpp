@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "raytrace/bake/density.h"
 #include "raytrace/bake/gutters.h"
+#include "raytrace/bake/seams.h"
 #include "raytrace/lights.h"
 
 namespace saccade::raytrace {
@@ -337,6 +338,7 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
   if (options_.imported)
     importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
   fillGutters(texels_, irradiance);
+  stitchSeams(findSeams(texels_), texels_.size(), layer == 1, irradiance);
   return irradiance;
 }
 

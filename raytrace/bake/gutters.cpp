@@ -87,8 +87,8 @@ void moveToCentres(const TexelMap& texels, const std::vector<char>& filled,
       }
     }
     const core::Vec3 value = irradiance[texel];
-    moved.emplace_back(texel, glm::clamp(value + slope.along(centre - cover.centroid), 0.5f * value,
-                                         2.0f * value));
+    moved.emplace_back(texel,
+                       glm::clamp(value + slope.along(centre - cover.centroid), 0.5f * value, 2.0f * value));
   }
   for (const auto& [texel, value] : moved) irradiance[texel] = value;
 }

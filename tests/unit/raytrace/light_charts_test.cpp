@@ -86,7 +86,7 @@ TEST(LightVariation, OfAStepIsProportionalToDistance) {
   sun.type = core::PunctualLight::Type::directional;
   sun.intensity = Vec3(3);
   b.scene.lights.push_back(sun);
-  b.quad(SceneBuilder::matte(0.5f), Vec3(0, 1, 2), Vec3(4, 0, 0), Vec3(0, 0, -4));
+  b.quad(SceneBuilder::matte(0), Vec3(0, 1, 2), Vec3(4, 0, 0), Vec3(0, 0, -4));
   VariationOptions options;
   options.metres = {0.08, 0.04, 0.02};
   options.points = 200000;
@@ -103,7 +103,7 @@ TEST(LightVariation, NoiseOfLightSamplesDoesNotCount) {
   SceneBuilder b;
   floorOf(b, 2);
   // A lamp close above all of it: even light in the middle, from many places at once.
-  b.quad(SceneBuilder::matte(0.5f, Vec3(10)), Vec3(-50, 0.05f, -50), Vec3(100, 0, 0), Vec3(0, 0, 100));
+  b.quad(SceneBuilder::matte(0, Vec3(10)), Vec3(-50, 0.05f, -50), Vec3(100, 0, 0), Vec3(0, 0, 100));
   VariationOptions options;
   options.metres = {0.1, 0.05, 0.02};
   const LightVariation v = variationOf(b.scene, options);
