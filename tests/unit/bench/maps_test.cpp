@@ -86,7 +86,6 @@ std::unique_ptr<app::Workspace> charted(int atlasSize) {
   w->scene = core::loadScene(SACCADE_SOURCE_DIR "/data/scenes/cornell.glb", {});
   w->plan = core::makePlan(w->scene);
   w->plan.lightmapSize = atlasSize;
-  w->plan.texelSizeMetres = 0;
   const raytrace::ChartAtlas atlas = raytrace::makeCharts(w->scene, w->plan, atlasSize);
   core::applyCharts(w->scene, atlas.charts);
   w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
