@@ -13,7 +13,7 @@ namespace {
 constexpr float kCreaseCosine = 0.906f;  // 25 degrees, as in chart_clusters.cpp
 constexpr double kPointsPerTexel = 2;
 constexpr int kMostSweeps = 64;
-constexpr double kAgreed = 1e-3;  // root mean square of the differences over that of the values: stop
+constexpr double kAgreed = 2e-4;  // root mean square of the differences over that of the values: stop
 constexpr float kStep = 0.25f;    // of the larger value: a difference that may be true
 
 /// An edge of one triangle only, as the charted mesh has it.
