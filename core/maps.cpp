@@ -9,6 +9,7 @@
 #include "core/byte_reader.h"
 #include "core/cache_folder.h"
 #include "core/content_hash.h"
+#include "core/light_state.h"
 #include "core/math/half.h"
 #include "core/scene/mesh_repair.h"
 
@@ -116,9 +117,9 @@ void addWard(ContentHash& hash, const std::optional<WardLobe>& ward) {
   hash.add(ward->alphaY);
 }
 
+/// All but its emission factor.
 void addMaterial(ContentHash& hash, const Material& m) {
   addVector(hash, m.baseColor);
-  addVector(hash, m.emission);
   addVector(hash, m.specularColor);
   addVector(hash, m.attenuationColor);
   addVector(hash, m.sheenColor);
@@ -217,6 +218,22 @@ void checkCounts(const Scene& scene, const SceneCharts& charts) {
               std::to_string(scene.meshes.size()) + " and " + std::to_string(scene.objects.size()));
 }
 
+/// All but what shines.
+ContentHash unlitHash(const Scene& scene) {
+  ContentHash hash;
+  hash.add(kVersion);
+  hash.add(static_cast<std::uint64_t>(scene.objects.size()));
+  for (const Object& o : scene.objects) addObject(hash, o);
+  hash.add(static_cast<std::uint64_t>(scene.meshes.size()));
+  for (const Mesh& m : scene.meshes) addMesh(hash, m);
+  hash.add(static_cast<std::uint64_t>(scene.materials.size()));
+  for (const Material& m : scene.materials) addMaterial(hash, m);
+  hash.add(static_cast<std::uint64_t>(scene.textures.size()));
+  for (const Texture& t : scene.textures) addTexture(hash, t);
+  if (scene.environment) addEnvironment(hash, *scene.environment);
+  return hash;
+}
+
 }  // namespace
 
 Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
@@ -255,20 +272,21 @@ void placeCharts(Scene& scene, const SceneCharts& charts) {
 }
 
 std::uint64_t sceneKey(const Scene& scene) {
-  ContentHash hash;
-  hash.add(kVersion);
-  hash.add(static_cast<std::uint64_t>(scene.objects.size()));
-  for (const Object& o : scene.objects) addObject(hash, o);
-  hash.add(static_cast<std::uint64_t>(scene.meshes.size()));
-  for (const Mesh& m : scene.meshes) addMesh(hash, m);
-  hash.add(static_cast<std::uint64_t>(scene.materials.size()));
-  for (const Material& m : scene.materials) addMaterial(hash, m);
-  hash.add(static_cast<std::uint64_t>(scene.textures.size()));
-  for (const Texture& t : scene.textures) addTexture(hash, t);
+  ContentHash hash = unlitHash(scene);
+  for (const Material& m : scene.materials) addVector(hash, m.emission);
   hash.add(static_cast<std::uint64_t>(scene.lights.size()));
   for (const PunctualLight& l : scene.lights) addLight(hash, l);
-  if (scene.environment) addEnvironment(hash, *scene.environment);
   return hash.value();
+}
+
+std::uint64_t unlitSceneKey(const Scene& scene) { return unlitHash(scene).value(); }
+
+LightState lightState(const Scene& scene) {
+  LightState state;
+  state.unlitKey = unlitSceneKey(scene);
+  state.lights = scene.lights;
+  for (const Material& m : scene.materials) state.emission.push_back(m.emission);
+  return state;
 }
 
 std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings) {

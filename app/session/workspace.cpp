@@ -2,12 +2,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <optional>
 
 #include "app/cli/console.h"
+#include "app/session/earlier_maps.h"
 #include "app/session/lightmap_import.h"
 #include "app/session/long_bake.h"
 #include "raytrace/bake/baker.h"
+#include "raytrace/bake/kept_charts.h"
 #include "raytrace/bake/light_charts.h"
 
 namespace saccade::app {
@@ -82,9 +85,22 @@ raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, co
   return std::move(charts.atlas);
 }
 
+/// What need not be baked again of the maps of another state of the lights; says so.
+raytrace::LightChange findChange(const Workspace& w, const EarlierMaps& earlier, int threads,
+                                 const std::stop_token& stop) {
+  raytrace::LightChange change =
+      raytrace::findLightChange(w.scene, w.plan, earlier.maps, earlier.light, threads, stop);
+  const long again = std::lround(100 * change.texelShare);
+  spdlog::info("light changed ({}): {} of {} charts ({} % of texels) baked again, {} % kept",
+               joined(change.names), change.charts - change.keptCharts, change.charts, again, 100 - again);
+  return change;
+}
+
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
-                               const BakeRequest& bake, std::uint64_t key, const std::stop_token& stop) {
+                               const BakeRequest& bake, std::uint64_t key, const raytrace::KeptCharts* kept,
+                               const std::stop_token& stop) {
   raytrace::BakeOptions bakeOptions;
+  bakeOptions.kept = kept;
   bakeOptions.quality = options.quality;
   bakeOptions.photons = options.photons;
   bakeOptions.seed = bake.seed;
@@ -95,9 +111,9 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
     bakeOptions.imported = &imported;
   }
   raytrace::BakeJob job(*w.world, atlas.size, bakeOptions);
-  const LongBake kept{mapsPath(key, options, bake), key, bake.resume || !bake.always, bake.always,
-                      bake.checkpointEvery};
-  core::IlluminationMaps maps = bakeLong(job, std::move(atlas.charts), kept, stop);
+  const LongBake longBake{mapsPath(key, options, bake), key, bake.resume || !bake.always, bake.always,
+                          bake.checkpointEvery};
+  core::IlluminationMaps maps = bakeLong(job, std::move(atlas.charts), longBake, stop);
   maps.key = key;
   if (maps.clampedTexels > 0)
     spdlog::warn("illumination maps hold at most 65504 W/m^2: {} texels are brighter, {:.3g} W are left out",
@@ -146,9 +162,22 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     if (!bake.always)
       spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
                    file.string());
-    raytrace::ChartAtlas atlas = chartReported(*w, options, bake, stop);
-    w->maps = bakeNow(*w, std::move(atlas), options, bake, key, stop);
+    std::optional<EarlierMaps> earlier;
+    if (bake.importFolder.empty()) earlier = earlierMaps(w->scene, settingsName(options, bake));
+    raytrace::ChartAtlas atlas;
+    raytrace::LightChange change;
+    if (earlier) {
+      atlas.charts = earlier->maps.charts;
+      atlas.size = earlier->maps.width;
+      core::applyCharts(w->scene, atlas.charts);
+      w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
+      change = findChange(*w, *earlier, bake.threads, stop);
+    } else {
+      atlas = chartReported(*w, options, bake, stop);
+    }
+    w->maps = bakeNow(*w, std::move(atlas), options, bake, key, earlier ? &change.kept : nullptr, stop);
     store(file, w->maps, namedByUser);
+    if (bake.importFolder.empty()) rememberMaps(w->scene, settingsName(options, bake), file, change.drift);
   }
   w->world->setMaps(&w->maps);
   return w;

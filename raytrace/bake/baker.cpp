@@ -185,6 +185,7 @@ void BakeJob::addDirect(int layer) {
   direct.samples = presetOf(options_.quality).directSamples;
   direct.seed = options_.seed;
   direct.threads = options_.threads;
+  if (options_.kept) direct.keptCharts = &options_.kept->keep;
   BakeStage stage;
   stage.name = layer == 0 ? "direct light" : "direct light on backs";
   stage.units = allBlocks(texels_.texelCount()).last;
@@ -203,6 +204,7 @@ void BakeJob::addGather(int layer) {
   gather.rays = gatherRays_;
   gather.seed = options_.seed;
   gather.threads = options_.threads;
+  if (options_.kept) gather.keptCharts = &options_.kept->keep;
   BakeStage stage;
   stage.name = layer == 0 ? "final gathering" : "final gathering on backs";
   stage.units = world_.lights().empty() ? 0 : allBlocks(texels_.texelCount()).last;
@@ -240,6 +242,10 @@ std::uint64_t BakeJob::settingsHash() const {
   }
   for (const core::Object& object : world_.scene().objects) {
     for (int c = 0; c < 4; ++c) hash.add(object.lightmapScaleOffset[c]);
+  }
+  if (options_.kept) {
+    hash.add(options_.kept->previous->key);
+    for (const char keep : options_.kept->keep) hash.add(keep);
   }
   return hash.value();
 }
@@ -317,7 +323,19 @@ void BakeJob::findSource(const core::Progress& progress) {
     source.resize(texels_.texelCount());
     for (std::size_t i = 0; i < source.size(); ++i)
       source[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;
+    takeKept(layer, source);
     fillGutters(texels_, source);
+  }
+}
+
+void BakeJob::takeKept(int layer, std::span<Vec3> irradiance) const {
+  if (!options_.kept) return;
+  const auto size = static_cast<std::size_t>(texels_.size());
+  for (std::size_t t = 0; t < irradiance.size(); ++t) {
+    const std::int32_t chart = texels_.chartOf(t);
+    if (chart < 0 || !options_.kept->keep[static_cast<std::size_t>(chart)]) continue;
+    irradiance[t] =
+        options_.kept->previous->texel(static_cast<int>(t % size), static_cast<int>(t / size), layer);
   }
 }
 
@@ -337,6 +355,7 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
     irradiance[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;
   if (options_.imported)
     importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
+  takeKept(layer, irradiance);
   fillGutters(texels_, irradiance);
   stitchSeams(findSeams(texels_), texels_.size(), layer == 1, irradiance);
   return irradiance;

@@ -21,6 +21,7 @@
 #include "raytrace/bake/direct.h"
 #include "raytrace/bake/gather.h"
 #include "raytrace/bake/imported_light.h"
+#include "raytrace/bake/kept.h"
 #include "raytrace/bake/open_area.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
@@ -34,6 +35,7 @@ struct BakeOptions {
   std::uint32_t seed = 1;
   int threads = 0;                          ///< 0 = all on the calling thread; the maps do not depend on it
   const ImportedLight* imported = nullptr;  ///< replaces what is baked for some objects; null: none
+  const KeptCharts* kept = nullptr;         ///< charts that keep the texels of an earlier bake; null: none
 };
 
 /// Particles that a quality stands for. Throws core::UsageError for an unknown name.
@@ -91,6 +93,8 @@ class BakeJob {
   std::vector<DensityEstimate> causticLight(int layer, const core::Progress& progress);
   std::vector<DensityEstimate> indirectLight(int layer, const core::Progress& progress);
   void findSource(const core::Progress& progress);
+  /// Overwrites kept charts' texels by those of the earlier bake.
+  void takeKept(int layer, std::span<Vec3> irradiance) const;
   std::vector<Vec3> finishLayer(int layer, const core::Progress& progress);
 
   const World& world_;

@@ -120,6 +120,7 @@ std::size_t directIrradiance(const World& world, const TexelMap& texels, int lay
     const std::int32_t chart = texels.chartOf(texel);
     if (chart < 0 || !(texels.area(texel) > 0)) return;
     if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;
+    if (options.keptCharts && (*options.keptCharts)[static_cast<std::size_t>(chart)]) return;
     RayCounters own;
     const Integrator integrator(world, few ? &*few : nullptr, texels, texel, layer, options.seed,
                                 options.counters ? *options.counters : own);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/progress.h"
 #include "raytrace/bake/parallel.h"
@@ -20,7 +21,8 @@ struct DirectOptions {
   int refinement = 4;  ///< up to so many times as many samples where they disagree (penumbrae, shadow edges)
   float relativeError = 0.02f;  ///< standard error of the mean that a texel is refined down to
   std::uint32_t seed = 1;
-  int threads = 0;                  ///< 0 = inline
+  int threads = 0;                                ///< 0 = inline
+  const std::vector<char>* keptCharts = nullptr;  ///< by chart: its texels are left alone; null: none
   RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 };
 

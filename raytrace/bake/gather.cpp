@@ -144,6 +144,7 @@ std::size_t gatherIrradiance(const World& world, const TexelMap& texels, const O
   return parallelTexels(options.threads, blocks, texels.texelCount(), progress, [&](std::size_t texel) {
     const float area = open.areas(layer)[texel];
     if (!(area > 0)) return;
+    if (options.keptCharts && (*options.keptCharts)[static_cast<std::size_t>(texels.chartOf(texel))]) return;
     out[texel] = gatherTexel(world, texels, texel, layer, area < texels.area(texel), source, options);
   });
 }

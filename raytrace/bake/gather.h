@@ -32,7 +32,8 @@ struct TexelLight {
 struct GatherOptions {
   int rays = 16;  ///< per texel and side; a power of two spreads them best over neighbouring texels
   std::uint32_t seed = 1;
-  int threads = 0;                  ///< 0 = inline
+  int threads = 0;                                ///< 0 = inline
+  const std::vector<char>* keptCharts = nullptr;  ///< by chart: its texels are left alone; null: none
   RayCounters* counters = nullptr;  ///< with `threads` 0: counts the rays, and logs them where it has a log
 };
 
