@@ -37,7 +37,7 @@ struct Preset {
 };
 // High is what keeps the errors of known scenes (bake_truth_test.cpp) below half a percent.
 constexpr Preset kPresets[] = {{"preview", 1 << 18, 0, 4, 0, 0},
-                               {"medium", 1 << 20, 192, 16, 8, 1.5f},
+                               {"medium", 1 << 22, 240, 16, 8, 1.5f},
                                {"high", 1 << 23, 240, 64, 128, 0.7f}};
 
 using Clock = std::chrono::steady_clock;

@@ -5,7 +5,8 @@
 // Departure: particles carry indirect light only. What arrives straight from a light is integrated per texel
 // (direct.h): direct light dominates the error of a pure particle method, has its sharpest edges (shadows),
 // and stratified shadow rays reach a given error with far fewer rays than photon counts, whose error falls as
-// 1 / sqrt(n). Particles keep what shadow rays cannot find: all further bounces and caustics.
+// 1 / sqrt(n). Particles keep what shadow rays cannot find: caustics, and all further bounces, which are
+// shown as they are at quality preview and else by way of final gathering (gather.h).
 #pragma once
 
 #include <atomic>

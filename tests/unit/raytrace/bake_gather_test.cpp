@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/specular_albedo.h"
+#include "raytrace/bake/density.h"
 #include "raytrace/bake/gather.h"
 #include "raytrace/bake/particles.h"
 #include "raytrace/bake/texel_map.h"
@@ -157,6 +158,29 @@ TEST(OpenArea, WhatStandsOnAFloorTakesItsAreaFromTheTexelsBelow) {
   });
   EXPECT_NEAR(area, 1, 1e-4);
   EXPECT_NEAR(open, 1 - 0.02, 0.002);
+}
+
+TEST(BakeDensity, ASlopeStaysASlopeUpToTheBordersOfItsChart) {
+  Builder b;
+  b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
+  const Stage s(std::move(b.scene));
+  std::vector<DirectEstimate> rising(s.texels->texelCount());
+  const auto truth = [&](std::size_t t) {
+    const auto size = static_cast<std::size_t>(s.texels->size());
+    return 10 + 0.1f * static_cast<float>(t % size) + 0.2f * static_cast<float>(t / size);
+  };
+  s.forEachTexel([&](std::size_t t) { rising[t] = {Vec3(truth(t)), 100}; });  // so much noise: wide windows
+  double watts = 0;
+  const FluxGrid flux = fluxOf(s.open->areas(0), rising, watts);
+  DensityOptions options;
+  options.doubt = 0;
+  options.maxRadius = 16;
+  std::vector<DensityEstimate> out(s.texels->texelCount());
+  estimateDensity(*s.texels, s.open->areas(0), flux, 0, watts, options, {}, {}, out);
+  s.forEachTexel([&](std::size_t t) {
+    ASSERT_NEAR(out[t].irradiance.y / truth(t), 1, 1e-3);
+    ASSERT_LT(out[t].relativeError, 0.1) << "averaged over many texels";
+  });
 }
 
 TEST(BakeGather, TheSameBitsForAnyThreadsAndBlocks) {
