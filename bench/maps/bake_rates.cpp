@@ -66,13 +66,14 @@ class Stages {
                raytrace::DirectOptions options;
                options.seed = seed_;
                options.counters = &counters;
-               raytrace::directIrradiance(world_, texels_, 0, blocks_, options, {}, estimates_);
+               raytrace::directIrradiance(world_, texels_, open_, 0, blocks_, options, {}, estimates_);
              }},
             {"gather", "texels", texels, [this](raytrace::RayCounters& counters) {
                raytrace::GatherOptions options;
                options.seed = seed_;
                options.counters = &counters;
-               raytrace::gatherIrradiance(world_, texels_, open_, 0, blocks_, light_, options, {}, estimates_);
+               raytrace::gatherIrradiance(world_, texels_, open_, 0, blocks_, light_, options, {},
+                                          estimates_);
              }}};
   }
 

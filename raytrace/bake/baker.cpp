@@ -18,6 +18,7 @@ namespace {
 
 constexpr float kLargestHalf = 65504;
 // Direct light has small errors and sharp edges: it is smoothed where its samples leave no doubt, and little.
+constexpr float kDirectError = 0.08f;  // standard error times the root of the samples, for refinement
 constexpr float kDirectConfidence = 0.4f;
 constexpr double kDirectEnough = 40000;  // 0.5 % noise
 constexpr int kDirectMaxRadius = 3;      // texels
@@ -183,6 +184,7 @@ void BakeJob::addParticles() {
 void BakeJob::addDirect(int layer) {
   DirectOptions direct;
   direct.samples = presetOf(options_.quality).directSamples;
+  direct.relativeError = kDirectError / std::sqrt(static_cast<float>(direct.samples));
   direct.seed = options_.seed;
   direct.threads = options_.threads;
   if (options_.kept) direct.keptCharts = &options_.kept->keep;
@@ -194,7 +196,7 @@ void BakeJob::addDirect(int layer) {
   stage.results = bytesOf(out);
   stage.work = [this, layer, direct, out](std::uint64_t first, std::uint64_t last,
                                           const core::Progress& progress) -> std::uint64_t {
-    return directIrradiance(world_, texels_, layer, {first, last}, direct, progress, out);
+    return directIrradiance(world_, texels_, open_, layer, {first, last}, direct, progress, out);
   };
   stages_.push_back(std::move(stage));
 }

@@ -14,6 +14,8 @@ namespace {
 /// Errors are compared with a texel's light, or with this share of what it would be without shadows.
 constexpr double kShadowScale = 0.1;
 
+/// Points that are tried for each that counts.
+constexpr std::uint32_t kMostTries = 8;
 /// Keeps the random numbers apart from those of particles.
 constexpr std::uint32_t kDirectStream = 0x64697265u;
 
@@ -39,20 +41,26 @@ class Integrator {
         texels_(texels),
         texel_(texel),
         front_(layer == 0),
+        reach_(OpenArea::reach(texels, texel)),
         stream_(kDirectStream + static_cast<std::uint32_t>(layer)),
         seed_(seed),
         counters_(counters) {}
 
   void run(std::uint32_t until) {
-    for (; count_ < until; ++count_) sample();
+    while (count_ < until && tried_ < kMostTries * until) sample();
   }
-  std::uint32_t count() const { return count_; }
+
+  /// Points that something covers are not to count.
+  void leaveOutCovered(bool on) { leaveOut_ = on; }
+  /// None was left out so far.
+  bool allOpen() const { return tried_ == count_; }
 
   struct Result {
     DirectEstimate estimate;
     double scale = 0;  ///< luminance of what the estimate is to be compared with
   };
   Result result() const {
+    if (count_ == 0) return {};
     const double n = count_;
     const LampTally::Result lamps = tally_.result();
     const double mean = core::luminance(Vec3(sum_)) / n;
@@ -65,8 +73,9 @@ class Integrator {
  private:
   /// A point of the texel, shadow rays to the lights and, for what they find badly, a ray by the cosine.
   void sample() {
-    core::PixelSampler random(static_cast<std::uint32_t>(texel_), stream_, count_, seed_);
+    core::PixelSampler random(static_cast<std::uint32_t>(texel_), stream_, tried_++, seed_);
     const Receiver at(world_, pointOf(texels_, texel_, random.next2D()), front_);
+    if (leaveOut_ && isCovered(world_, at.surface, reach_, counters_)) return;
     const float uLight = random.next1D();
     const Vec2 u = random.next2D();
     const EnvironmentLight* environment = world_.lights().environment();
@@ -75,7 +84,7 @@ class Integrator {
     const LightChoice choice = few_ ? LightChoice() : world_.lights().choose(at.surface.position);
     if (!few_) sum += sampleLights(world_, at, choice, uLight, u, counters_);
     if (environment) sum += sampleEnvironment(world_, at, *environment, random.next2D(), counters_);
-    if (count_ % kCosineEvery == 0 && (environment || !few_)) {
+    if (count_++ % kCosineEvery == 0 && (environment || !few_)) {
       sum += sampleCosine(world_, at, few_ ? nullptr : &choice, random.next2D(), counters_) *
              static_cast<float>(kCosineEvery);
     }
@@ -88,43 +97,56 @@ class Integrator {
   const TexelMap& texels_;
   std::size_t texel_;
   bool front_;
+  float reach_;  ///< of what covers points, m
+  bool leaveOut_ = false;
   std::uint32_t stream_, seed_;
   RayCounters& counters_;
-  std::uint32_t count_ = 0;
+  std::uint32_t tried_ = 0, count_ = 0;
   LampTally tally_;
   glm::dvec3 sum_{0};  ///< of what the tally does not hold
   double squares_ = 0;
 };
 
-DirectEstimate integrateTexel(Integrator texel, const DirectOptions& options) {
+/// `cut`: the texel is known to be covered in part.
+DirectEstimate integrateTexel(const Integrator& fresh, bool cut, const DirectOptions& options) {
+  std::optional<Integrator> texel(fresh);
+  texel->leaveOutCovered(cut);
   auto count = static_cast<std::uint32_t>(options.samples);
   const std::uint32_t most = count * static_cast<std::uint32_t>(options.refinement);
   while (true) {
-    texel.run(count);
-    const Integrator::Result result = texel.result();
+    texel->run(count);
+    const Integrator::Result result = texel->result();
     const double tolerated = options.relativeError * result.scale;
-    if (result.estimate.variance <= tolerated * tolerated || count >= most) return result.estimate;
+    if (result.estimate.variance <= tolerated * tolerated) return result.estimate;
+    if (!cut) {  // its open area was probed at few points: look again
+      cut = true;
+      texel.emplace(fresh);
+      texel->leaveOutCovered(true);
+      continue;
+    }
+    if (count >= most) return result.estimate;
+    texel->leaveOutCovered(!texel->allOpen());
     count = std::min(2 * count, most);
   }
 }
 
 }  // namespace
 
-std::size_t directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                             const DirectOptions& options, const core::Progress& progress,
+std::size_t directIrradiance(const World& world, const TexelMap& texels, const OpenArea& open, int layer,
+                             BlockRange blocks, const DirectOptions& options, const core::Progress& progress,
                              std::span<DirectEstimate> out) {
   if (world.lights().empty()) return blocks.last;
   std::optional<FewLamps> few;
   if (FewLamps::serves(world)) few.emplace(world);
   return parallelTexels(options.threads, blocks, texels.texelCount(), progress, [&](std::size_t texel) {
-    const std::int32_t chart = texels.chartOf(texel);
-    if (chart < 0 || !(texels.area(texel) > 0)) return;
-    if (layer == 1 && !texels.charts()[static_cast<std::size_t>(chart)].doubleSided) return;
-    if (options.keptCharts && (*options.keptCharts)[static_cast<std::size_t>(chart)]) return;
+    const float area = open.areas(layer)[texel];
+    if (!(area > 0)) return;
+    const auto chart = static_cast<std::size_t>(texels.chartOf(texel));
+    if (options.keptCharts && (*options.keptCharts)[chart]) return;
     RayCounters own;
-    const Integrator integrator(world, few ? &*few : nullptr, texels, texel, layer, options.seed,
-                                options.counters ? *options.counters : own);
-    out[texel] = integrateTexel(integrator, options);
+    const Integrator fresh(world, few ? &*few : nullptr, texels, texel, layer, options.seed,
+                           options.counters ? *options.counters : own);
+    out[texel] = integrateTexel(fresh, area < texels.area(texel), options);
   });
 }
 

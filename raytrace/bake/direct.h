@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "raytrace/bake/open_area.h"
 #include "raytrace/bake/parallel.h"
 #include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
@@ -33,13 +34,14 @@ struct DirectEstimate {
   float variance = 0;
 };
 
-/// For the texels of `blocks`: out[texel] = mean over the texel's covered area of the light that arrives
+/// For the texels of `blocks`: out[texel] = mean over the texel's open area of the light that arrives
 /// straight from lights (through alpha-blended surfaces too) at its front (layer 0) or back (layer 1,
-/// double-sided charts only), W/m^2, against the interpolated normal. Texels without surface are left alone.
+/// double-sided charts only), W/m^2, against the interpolated normal. Texels without are left alone.
+/// `open` must hold what it finds in these blocks.
 /// Same bits for any number of threads and any ranges. Returns the first block that was not done, for a stop
 /// was requested; all before it are.
-std::size_t directIrradiance(const World& world, const TexelMap& texels, int layer, BlockRange blocks,
-                             const DirectOptions& options, const core::Progress& progress,
+std::size_t directIrradiance(const World& world, const TexelMap& texels, const OpenArea& open, int layer,
+                             BlockRange blocks, const DirectOptions& options, const core::Progress& progress,
                              std::span<DirectEstimate> out);
 
 }  // namespace saccade::raytrace

@@ -38,7 +38,9 @@ bool isCovered(const World& world, const Surface& at, float distance, RayCounter
   if (!world.intersect(at.leave(at.ng), hit, counters)) return false;
   const CompiledMaterial& m = world.materialOf(hit.object);
   if (m.alphaMode == core::AlphaMode::blend || m.transmission > 0) return false;
-  const bool within = world.closed(hit.object) && glm::dot(hit.ng, at.ng) > 0;
+  const bool facing = glm::dot(hit.ng, at.ng) < 0;
+  if (m.emits() && (m.doubleSided || facing)) return false;  // it lights the point
+  const bool within = world.closed(hit.object) && !facing;
   return within || hit.t < distance;
 }
 

@@ -28,6 +28,8 @@ class Direct {
     core::applyCharts(scene_, atlas.charts);
     world_ = std::make_unique<World>(scene_, plan_);
     texels_ = std::make_unique<TexelMap>(scene_, atlas.size);
+    open_ = std::make_unique<OpenArea>(*texels_, 1);
+    open_->probe(*world_, *texels_, 0, allBlocks(texels_->texelCount()), 2, {});
   }
   std::vector<DirectEstimate> bake(int samples, std::uint32_t seed = 1, int refinement = 4) const {
     DirectOptions options;
@@ -37,7 +39,7 @@ class Direct {
     options.relativeError = 0.005f;
     options.threads = 2;
     std::vector<DirectEstimate> out(texels_->texelCount());
-    directIrradiance(*world_, *texels_, 0, allBlocks(texels_->texelCount()), options, {}, out);
+    directIrradiance(*world_, *texels_, *open_, 0, allBlocks(texels_->texelCount()), options, {}, out);
     return out;
   }
   /// Mean of truth(point, normal) over a texel.
@@ -67,6 +69,7 @@ class Direct {
     }
     return out;
   }
+  double openShare(std::size_t texel) const { return open_->areas(0)[texel] / texels_->area(texel); }
   /// RMS difference of an object's texels to truth(point, normal), as a share of its mean.
   template <class Truth>
   double error(int object, Truth&& truth, int n = 8) const {
@@ -88,6 +91,7 @@ class Direct {
   core::Plan plan_;
   std::unique_ptr<World> world_;
   std::unique_ptr<TexelMap> texels_;
+  std::unique_ptr<OpenArea> open_;
 };
 
 /// A rectangle's irradiance by Lambert's formula in double.
@@ -153,6 +157,35 @@ TEST(DirectLight, Hard8LightAtGrazingAngleOrBehindIsZero) {
   const Direct direct(std::move(b.scene), 32);
   const std::vector<DirectEstimate> found = direct.bake(4);
   for (const std::size_t t : direct.texelsOf(floor)) ASSERT_EQ(found[t].irradiance, Vec3(0));
+}
+
+TEST(DirectLight, WhatLiesUnderABodyDoesNotDarkenTheTexelsThatItCuts) {
+  Builder b;  // under a sun overhead all that is open is lit alike
+  const int floor = b.quad(Builder::matte(0.5f), Vec3(-1, 0, 1), Vec3(2, 0, 0), Vec3(0, 0, -2));
+  const auto leg = [](float s, float t) {  // round, so that it cuts texels at any share; 2 mm above the floor
+    const float a = 2 * core::kPi * s, y = 0.002f + std::clamp(1.5f * t - 0.25f, 0.0f, 1.0f),
+                r = 0.3f * std::clamp(std::min(t, 1 - t) * 6, 0.0f, 1.0f);
+    return Vec3(r * std::cos(a), y, -r * std::sin(a));
+  };
+  b.patch(Builder::matte(0.5f), 48, 12, leg);
+  core::PunctualLight sun;
+  sun.type = core::PunctualLight::Type::directional;
+  sun.direction = Vec3(0, -1, 0);
+  sun.intensity = Vec3(4);
+  b.scene.lights.push_back(sun);
+  const Direct direct(std::move(b.scene), 96);
+  const std::vector<DirectEstimate> found = direct.bake(16);
+  int cut = 0, covered = 0;
+  for (const std::size_t t : direct.texelsOf(floor)) {
+    if (direct.openShare(t) == 0) {
+      ++covered;
+      continue;
+    }
+    cut += direct.openShare(t) < 1;
+    ASSERT_NEAR(found[t].irradiance.y, 4, 0.02) << direct.openShare(t);
+  }
+  EXPECT_GT(cut, 20);
+  EXPECT_GT(covered, 20);
 }
 
 TEST(DirectLight, StatedVarianceBoundsTheSpreadOfManySeedsAndIsZeroInTheOpen) {
