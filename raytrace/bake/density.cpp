@@ -82,7 +82,8 @@ std::size_t chooseRadius(const SummedArea& sums, const ChartRect& chart, int x, 
   std::size_t best = 0;
   for (std::size_t i = 0; i < kRadii.size() && kRadii[i] <= options.maxRadius; ++i) {
     WindowSum sum = sums.window(chart, x, y, kRadii[i]);
-    if (kRadii[i] < options.pooledRadius) sum.squared = pool.squared * sum.area / pool.area;
+    if (kRadii[i] < options.pooledRadius)
+      sum.squared = std::max(sum.squared, pool.squared * sum.area / pool.area);
     const double mean = sum.luminance() / sum.area;
     // Few or no particles do not pass for certainty.
     const double error = options.confidence * std::sqrt(sum.squared + options.doubt) / sum.area;

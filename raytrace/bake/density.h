@@ -24,8 +24,8 @@ struct DensityOptions {
   double enough = 4000;     ///< (mean / standard error)^2 beyond which a window does not grow: 1.6 % noise
   double doubt = 1;         ///< added to the sum of squared weights: so many particles may have been missed
   int maxRadius = 96;       ///< texels
-  /// Windows smaller than this take their variance from one so wide: that of few samples is itself a sample,
-  /// and those that missed something bright would pass for sure.
+  /// The variance of windows smaller than this is at least that of one so wide, in proportion: that of few
+  /// samples is itself a sample, and those that missed something bright would pass for sure.
   int pooledRadius = 0;
   int threads = 0;  ///< 0 = inline
 };

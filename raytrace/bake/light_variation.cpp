@@ -169,59 +169,111 @@ Probe probe(const World& world, const TexelMap& texels, const ItemSurface& item,
   return out;
 }
 
-LightVariation average(double area, const Probe* first, std::size_t count) {
-  LightVariation out;
-  out.area = area;
-  std::array<double, kVariationDistances> sum{};
+/// Sums over an item's probes.
+struct ProbeSum {
+  double irradiance = 0;
+  std::size_t count = 0;
+  std::array<double, kVariationDistances> square{};
   std::array<std::size_t, kVariationDistances> with{};
-  for (std::size_t i = 0; i < count; ++i) {
-    out.irradiance += first[i].irradiance / static_cast<double>(count);
+
+  void add(const Probe& p) {
+    irradiance += p.irradiance;
+    ++count;
     for (std::size_t d = 0; d < kVariationDistances; ++d) {
-      if (std::isnan(first[i].square[d])) continue;
-      sum[d] += first[i].square[d];
+      if (std::isnan(p.square[d])) continue;
+      square[d] += p.square[d];
       ++with[d];
     }
   }
-  for (std::size_t d = 0; d < kVariationDistances; ++d) {
-    out.structure[d] = with[d] > 0 ? std::max(0.0, sum[d] / static_cast<double>(with[d]))
-                                   : std::numeric_limits<double>::quiet_NaN();
+  double mean() const { return count > 0 ? irradiance / static_cast<double>(count) : 0; }
+
+  LightVariation average(double area) const {
+    LightVariation out;
+    out.area = area;
+    out.irradiance = mean();
+    for (std::size_t d = 0; d < kVariationDistances; ++d) {
+      out.structure[d] = with[d] > 0 ? std::max(0.0, square[d] / static_cast<double>(with[d]))
+                                     : std::numeric_limits<double>::quiet_NaN();
+    }
+    return out;
   }
-  return out;
-}
+};
+
+/// Probes items, round by round.
+class Survey {
+ public:
+  Survey(const World& world, const TexelMap& texels, std::vector<ItemSurface> items,
+         const VariationOptions& options)
+      : world_(world), texels_(texels), options_(options), items_(std::move(items)), sums_(items_.size()) {}
+
+  /// options.points spread in proportion to `shares` (by item), and `each` more to every item.
+  void round(const std::vector<double>& shares, std::size_t each, const core::Progress& progress) {
+    double total = 0;
+    for (const double share : shares) total += share;
+    std::vector<std::size_t> first{0};
+    std::vector<std::uint32_t> itemOf;
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      const double share = total > 0 ? shares[i] / total : 0;
+      const std::size_t points =
+          items_[i].entries.empty()
+              ? 0
+              : each + static_cast<std::size_t>(share * static_cast<double>(options_.points));
+      itemOf.insert(itemOf.end(), points, static_cast<std::uint32_t>(i));
+      first.push_back(itemOf.size());
+    }
+    std::vector<Probe> probes(itemOf.size());
+    constexpr std::size_t kBatch = 64;
+    const std::size_t batches = (probes.size() + kBatch - 1) / kBatch;
+    parallelFor(options_.threads, batches, progress, {}, [&](std::size_t batch) {
+      for (std::size_t i = batch * kBatch; i < std::min(probes.size(), (batch + 1) * kBatch); ++i) {
+        const std::size_t item = itemOf[i], begin = first[item];
+        const double stratum =
+            (static_cast<double>(i - begin) + 0.5) / static_cast<double>(first[item + 1] - begin);
+        probes[i] =
+            probe(world_, texels_, items_[item], static_cast<std::uint32_t>(done_ + i), stratum, options_);
+      }
+    });
+    for (std::size_t i = 0; i < probes.size(); ++i) sums_[itemOf[i]].add(probes[i]);
+    done_ += probes.size();
+  }
+
+  std::vector<double> areas() const {
+    std::vector<double> out;
+    for (const ItemSurface& item : items_) out.push_back(item.area());
+    return out;
+  }
+  /// Area times squared light: what the error of a step there counts.
+  std::vector<double> squaredLight() const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < items_.size(); ++i)
+      out.push_back(items_[i].area() * sums_[i].mean() * sums_[i].mean());
+    return out;
+  }
+  std::vector<LightVariation> result() const {
+    std::vector<LightVariation> out;
+    for (std::size_t i = 0; i < items_.size(); ++i) out.push_back(sums_[i].average(items_[i].area()));
+    return out;
+  }
+
+ private:
+  const World& world_;
+  const TexelMap& texels_;
+  const VariationOptions& options_;
+  std::vector<ItemSurface> items_;
+  std::vector<ProbeSum> sums_;
+  std::size_t done_ = 0;
+};
 
 }  // namespace
 
 std::vector<LightVariation> measureVariation(const World& world, const TexelMap& texels,
                                              const ChartLayout& layout, const VariationOptions& options,
                                              const core::Progress& progress) {
-  const std::vector<ItemSurface> items = surfaceOfItems(world, layout);
-  double total = 0;
-  for (const ItemSurface& item : items) total += item.area();
-  std::vector<std::size_t> first{0};
-  std::vector<std::uint32_t> itemOf;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const double share = total > 0 ? items[i].area() / total : 0;
-    const std::size_t points =
-        items[i].entries.empty()
-            ? 0
-            : options.pointsPerItem + static_cast<std::size_t>(share * static_cast<double>(options.points));
-    itemOf.insert(itemOf.end(), points, static_cast<std::uint32_t>(i));
-    first.push_back(itemOf.size());
-  }
-  std::vector<Probe> probes(itemOf.size());
-  constexpr std::size_t kBatch = 64;
-  parallelFor(options.threads, (probes.size() + kBatch - 1) / kBatch, progress, {}, [&](std::size_t batch) {
-    for (std::size_t i = batch * kBatch; i < std::min(probes.size(), (batch + 1) * kBatch); ++i) {
-      const std::size_t item = itemOf[i], begin = first[item];
-      const double stratum =
-          (static_cast<double>(i - begin) + 0.5) / static_cast<double>(first[item + 1] - begin);
-      probes[i] = probe(world, texels, items[item], static_cast<std::uint32_t>(i), stratum, options);
-    }
-  });
-  std::vector<LightVariation> out;
-  for (std::size_t i = 0; i < items.size(); ++i)
-    out.push_back(average(items[i].area(), probes.data() + first[i], first[i + 1] - first[i]));
-  return out;
+  Survey survey(world, texels, surfaceOfItems(world, layout), options);
+  survey.round(survey.areas(), options.pointsPerItem, progress);
+  // Small bright surfaces (bars before a window) hold much of the error and little of the area.
+  survey.round(survey.squaredLight(), 0, progress);
+  return survey.result();
 }
 
 }  // namespace saccade::raytrace

@@ -28,8 +28,8 @@ struct LightVariation {
 };
 
 struct VariationOptions {
-  std::size_t points = 24000;                        ///< spread by area, about fifty rays each
-  std::size_t pointsPerItem = 4;                     ///< beyond these
+  std::size_t points = 24000;     ///< by area, and as many again by light: about fifty rays each
+  std::size_t pointsPerItem = 4;  ///< beyond these
   std::array<double, kVariationDistances> metres{};  ///< descending
   std::uint32_t seed = 1;
   int threads = 0;  ///< 0 = inline; changes nothing of the result

@@ -18,12 +18,26 @@ struct PowerLaw {
   double at(double h) const { return factor * std::pow(h, power); }
 };
 
+/// Raised where few probes met a step that those at other distances did: D neither falls with the distance
+/// nor rises faster than kLargestPower. `metres` descend.
+std::array<double, kVariationDistances> plausible(std::array<double, kVariationDistances> structure,
+                                                  std::span<const double> metres, double floor) {
+  double least = floor;
+  for (std::size_t d = metres.size(); d-- > 0;)
+    if (!std::isnan(structure[d])) structure[d] = least = std::max(structure[d], least);
+  for (std::size_t d = 1; d < metres.size(); ++d)
+    structure[d] =
+        std::max(structure[d], structure[d - 1] * std::pow(metres[d] / metres[d - 1], kLargestPower));
+  return structure;
+}
+
 /// Least squares in the logarithms. Values below `floor`, and what is missing, are taken for it.
 PowerLaw fit(const LightVariation& v, std::span<const double> metres, double floor) {
+  const std::array<double, kVariationDistances> structure = plausible(v.structure, metres, floor);
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t d = 0; d < metres.size(); ++d) {
-    if (std::isnan(v.structure[d])) continue;
-    const double lx = std::log(metres[d]), ly = std::log(std::max(v.structure[d], floor));
+    if (std::isnan(structure[d])) continue;
+    const double lx = std::log(metres[d]), ly = std::log(structure[d]);
     ++n, x += lx, y += ly, xx += lx * lx, xy += lx * ly;
   }
   PowerLaw out;
