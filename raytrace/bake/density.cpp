@@ -175,12 +175,15 @@ DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, 
 }  // namespace
 
 FluxGrid fluxOf(std::span<const float> areas, std::span<const DirectEstimate> direct, double& watts) {
-  double total = 0;
-  for (std::size_t i = 0; i < direct.size(); ++i) total += core::luminance(direct[i].irradiance) * areas[i];
-  // The mean weight is 1, so sums stay below the number of texels.
-  watts = total > 0 ? total / static_cast<double>(direct.size()) : 1;
-  // Clamped, a sum of squares cannot overflow; too small an error only keeps a window small.
-  const double largestSquare = 0x1p33 / static_cast<double>(direct.size());
+  double total = 0, squares = 0;
+  for (std::size_t i = 0; i < direct.size(); ++i) {
+    total += core::luminance(direct[i].irradiance) * areas[i];
+    squares += double{direct[i].variance} * areas[i] * areas[i];
+  }
+  // No sum may overflow: with a mean weight of at most 1 they stay below the number of texels, those of
+  // squares below 2^32.
+  watts = std::max(total / static_cast<double>(direct.size()), std::sqrt(squares) * 0x1p-16);
+  if (!(watts > 0)) watts = 1;
   FluxGrid flux(direct.size(), 1);
   for (std::size_t i = 0; i < direct.size(); ++i) {
     const double perWatt = areas[i] / watts;
@@ -188,8 +191,8 @@ FluxGrid fluxOf(std::span<const float> areas, std::span<const DirectEstimate> di
     for (int c = 0; c < 3; ++c) {
       cell.rgb[c] = static_cast<std::uint64_t>(direct[i].irradiance[c] * perWatt * FluxGrid::kUnitsPerWeight);
     }
-    const double square = std::min(direct[i].variance * perWatt * perWatt, largestSquare);
-    cell.squared = static_cast<std::uint64_t>(square * FluxGrid::kUnitsPerWeight);
+    cell.squared =
+        static_cast<std::uint64_t>(direct[i].variance * perWatt * perWatt * FluxGrid::kUnitsPerWeight);
   }
   return flux;
 }

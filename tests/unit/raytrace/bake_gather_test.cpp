@@ -183,6 +183,27 @@ TEST(BakeDensity, ASlopeStaysASlopeUpToTheBordersOfItsChart) {
   });
 }
 
+TEST(BakeDensity, OneBrightRayAmongManyTexelsIsSpreadOverItsWindow) {
+  Builder b;
+  b.quad(Builder::matte(0.5f), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -1));
+  const Stage s(std::move(b.scene), 512);
+  std::vector<DirectEstimate> dim(s.texels->texelCount());
+  s.forEachTexel([&](std::size_t t) { dim[t] = {Vec3(0.001f), 1e-8f}; });
+  const std::size_t firefly = s.texels->texelCount() / 2 + 256;
+  dim[firefly] = {Vec3(4), 16};  // 4000 times the mean: its square is far beyond what is usual
+  double watts = 0;
+  const FluxGrid flux = fluxOf(s.open->areas(0), dim, watts);
+  DensityOptions options;
+  options.confidence = 1.5f;
+  options.doubt = 0;
+  options.maxRadius = 11;
+  options.pooledRadius = 4;
+  std::vector<DensityEstimate> out(s.texels->texelCount());
+  estimateDensity(*s.texels, s.open->areas(0), flux, 0, watts, options, {}, {}, out);
+  // Alone in the widest window, 23 texels wide, under a bell that is 1.2^2 / (1.2 - 1/3)^2 times its mean.
+  s.forEachTexel([&](std::size_t t) { ASSERT_LT(out[t].irradiance.y, 0.001 + 2 * 4.0 / (23 * 23)); });
+}
+
 TEST(BakeGather, TheSameBitsForAnyThreadsAndBlocks) {
   core::Material glossy = Builder::matte(0.6f);
   glossy.specular = 1;
