@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "app/cli/console.h"
@@ -73,6 +74,21 @@ raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Load
   return imported;
 }
 
+/// Which meshes' second UV sets are kept as the layout of their charts; nothing where no mesh has one.
+void reportOwnAtlases(const raytrace::AtlasCounts& counts) {
+  using raytrace::AtlasFault;
+  const std::size_t missing = counts[static_cast<std::size_t>(AtlasFault::missing)];
+  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) == missing) return;
+  const std::size_t kept = counts[static_cast<std::size_t>(AtlasFault::none)];
+  spdlog::info("{} {} the second UV set as the layout of light", kept,
+               kept == 1 ? "mesh keeps" : "meshes keep");
+  for (std::size_t f = 1; f < counts.size(); ++f) {
+    if (counts[f] == 0) continue;
+    spdlog::info("{} {} cut anew: the second UV set {}", counts[f], counts[f] == 1 ? "mesh is" : "meshes are",
+                 raytrace::describe(static_cast<AtlasFault>(f)));
+  }
+}
+
 /// Charts the scene and builds its world.
 raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
                                    const std::stop_token& stop) {
@@ -82,6 +98,7 @@ raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, co
   spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; direct light misses {:.2g} % by them",
                charts.atlas.chartCount, charts.atlas.size, charts.atlas.size, charts.finestMetres,
                charts.coarsestMetres, 100 * charts.relativeError);
+  reportOwnAtlases(charts.atlas.ownAtlases);
   return std::move(charts.atlas);
 }
 

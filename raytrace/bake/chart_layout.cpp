@@ -17,6 +17,16 @@ int texelsFor(double metres, double texel) {
   return static_cast<int>(std::clamp(std::round(metres / texel), 1.0, 1e6));
 }
 
+double areaOf(const core::Mesh& mesh) {
+  double twice = 0;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const glm::dvec3 a = mesh.positions[mesh.indices[i]];
+    twice += glm::length(glm::cross(glm::dvec3(mesh.positions[mesh.indices[i + 1]]) - a,
+                                    glm::dvec3(mesh.positions[mesh.indices[i + 2]]) - a));
+  }
+  return 0.5 * twice;
+}
+
 /// Cube root of the volume that a unit of the mesh's space takes.
 double unitOf(const core::Object& object) {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(object.meshToWorld))));
@@ -24,8 +34,12 @@ double unitOf(const core::Object& object) {
 
 }  // namespace
 
-ChartLayout::ChartLayout(const core::Scene& scene)
-    : scene_(scene), charts_(scene.meshes.size()), chartOfTriangle_(scene.meshes.size()) {
+ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels)
+    : scene_(scene),
+      charts_(scene.meshes.size()),
+      chartOfTriangle_(scene.meshes.size()),
+      own_(scene.meshes.size()) {
+  shareTexels(mostTexels);
   std::vector<std::size_t> blockOf(scene.meshes.size(), kNone);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
     const core::Object& object = scene.objects[o];
@@ -35,7 +49,7 @@ ChartLayout::ChartLayout(const core::Scene& scene)
     } else if (scene.meshOf(object).instanced) {
       addInstance(o, blockOf[object.mesh]);
     } else {
-      const std::vector<PlacedChart>& charts = clustered(object.mesh);
+      const std::vector<PlacedChart>& charts = chartsOf(object.mesh);
       order_.push_back(object.mesh);
       orderItem_.push_back(items_.size());
       for (std::size_t c = 0; c < charts.size(); ++c) addItem(charts, c, c + 1, 1);
@@ -56,21 +70,53 @@ void ChartLayout::addInstance(std::size_t o, std::size_t& block) {
     blocks_.push_back({object.mesh, 0, 0});
   }
   instances_.push_back({o, block, unit, 1, {}});
-  const std::vector<PlacedChart>& charts = clustered(object.mesh);
+  const std::vector<PlacedChart>& charts = chartsOf(object.mesh);
   addItem(charts, 0, charts.size(), unit);
 }
 
+/// By surface in the world; a mesh's objects share what it gets.
+void ChartLayout::shareTexels(double mostTexels) {
+  constexpr double kOfAtlas = 0.5;
+  std::vector<double> area(scene_.meshes.size(), 0);
+  std::vector<double> objects(scene_.meshes.size(), 0);
+  double total = 0;
+  for (const core::Object& object : scene_.objects) {
+    if (!isLit(object)) continue;
+    const double unit = unitOf(object), added = unit * unit * areaOf(scene_.meshOf(object));
+    ++objects[object.mesh];
+    if (!std::isfinite(added)) continue;
+    area[object.mesh] += added;
+    total += added;
+  }
+  for (std::size_t m = 0; m < area.size(); ++m)
+    shares_.push_back(area[m] > 0 ? kOfAtlas * mostTexels * area[m] / (total * objects[m]) : 0);
+}
+
 /// Charts of a mesh, made once.
-std::vector<ChartLayout::PlacedChart>& ChartLayout::clustered(std::uint32_t mesh) {
+std::vector<ChartLayout::PlacedChart>& ChartLayout::chartsOf(std::uint32_t mesh) {
   std::vector<PlacedChart>& charts = charts_[mesh];
   if (!charts.empty()) return charts;
+  own_[mesh] = examineAtlas(scene_.meshes[mesh], shares_[mesh]);
+  ++ownAtlases_[static_cast<std::size_t>(own_[mesh].fault)];
   std::vector<std::uint32_t>& chartOf = chartOfTriangle_[mesh];
   chartOf.resize(scene_.meshes[mesh].triangleCount());
+  if (own_[mesh].fault == AtlasFault::none) {
+    keepAtlas(mesh);
+    return charts;
+  }
   for (Chart& chart : clusterMesh(scene_.meshes[mesh])) {
     for (const std::uint32_t t : chart.triangles) chartOf[t] = static_cast<std::uint32_t>(charts.size());
     charts.push_back({std::move(chart), {}});
   }
   return charts;
+}
+
+/// One rectangle that stands for all its charts.
+void ChartLayout::keepAtlas(std::uint32_t mesh) {
+  PlacedChart whole;
+  whole.chart.hi = (own_[mesh].hi - own_[mesh].lo) * own_[mesh].metres;
+  whole.coarsestTexel = own_[mesh].coarsestTexel;
+  charts_[mesh].push_back(std::move(whole));
 }
 
 void ChartLayout::addItem(const std::vector<PlacedChart>& charts, std::size_t first, std::size_t last,
@@ -93,7 +139,8 @@ std::size_t ChartLayout::itemOf(std::size_t object, std::size_t triangle) const 
 
 /// Widths and heights of all rectangles.
 void ChartLayout::size(std::span<const double> texelMetres) {
-  const auto sizeCharts = [](PlacedChart& p, double texel) {
+  const auto sizeCharts = [](PlacedChart& p, double wished) {
+    const double texel = std::min(wished, p.coarsestTexel);
     const glm::dvec2 extent = p.chart.hi - p.chart.lo;
     p.place.width = texelsFor(extent.x, texel) + 2 * kBorder;
     p.place.height = texelsFor(extent.y, texel) + 2 * kBorder;
@@ -108,7 +155,10 @@ void ChartLayout::size(std::span<const double> texelMetres) {
     coarsest[b.block] = std::max(coarsest[b.block], texelMetres[firstItem_[b.object]] / b.unit);
   }
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    for (PlacedChart& p : charts_[blocks_[b].mesh]) sizeCharts(p, coarsest[b]);
+    for (PlacedChart& p : charts_[blocks_[b].mesh]) {
+      coarsest[b] = std::min(coarsest[b], p.coarsestTexel);
+      sizeCharts(p, coarsest[b]);
+    }
   }
   for (PlacedBlock& b : instances_) {
     const double ratio = coarsest[b.block] * b.unit / texelMetres[firstItem_[b.object]];
@@ -199,8 +249,14 @@ core::SceneCharts ChartLayout::cut(int size) const {
       static_cast<float>(size);
   for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
     const core::Mesh& mesh = scene_.meshes[m];
-    out.meshes.push_back(!charts_[m].empty() ? cutMesh(mesh, charts_[m], size)
-                                             : wholeMesh(mesh, mesh.instanced ? core::Vec2(0) : shared));
+    if (charts_[m].empty()) {
+      const core::Vec2 point = mesh.instanced ? core::Vec2(0) : shared;
+      out.meshes.push_back(wholeMesh(mesh, std::vector<core::Vec2>(mesh.positions.size(), point)));
+    } else if (own_[m].fault == AtlasFault::none) {
+      out.meshes.push_back(keptMesh(static_cast<std::uint32_t>(m), size));
+    } else {
+      out.meshes.push_back(cutMesh(mesh, charts_[m], size));
+    }
   }
   for (const core::Object& o : scene_.objects) {
     out.places.push_back(scene_.meshOf(o).instanced ? core::Vec4(0, 0, shared) : core::Vec4(1, 1, 0, 0));
@@ -213,10 +269,10 @@ core::SceneCharts ChartLayout::cut(int size) const {
   return out;
 }
 
-core::Vec2 ChartLayout::atlasUv(const PlacedChart& placed, const core::Vec3& position, int size) {
+core::Vec2 ChartLayout::atlasUv(const PlacedChart& placed, const glm::dvec2& projected, int size) {
   const Chart& chart = placed.chart;
   const glm::dvec2 extent = chart.hi - chart.lo;
-  const glm::dvec2 q = chart.project(position) - chart.lo;
+  const glm::dvec2 q = projected - chart.lo;
   const auto texel = [](double at, double whole, int first, int count) {
     const double share = whole > 0 && std::isfinite(at) ? std::clamp(at / whole, 0.0, 1.0) : 0.5;
     return first + kBorder + share * (count - 2 * kBorder);
@@ -240,7 +296,7 @@ core::MeshCharts ChartLayout::cutMesh(const core::Mesh& mesh, const std::vector<
           ownerChart[v] = c;
           newVertex[v] = static_cast<std::uint32_t>(out.sourceVertex.size());
           out.sourceVertex.push_back(v);
-          out.uv.push_back(atlasUv(charts[c], mesh.positions[v], size));
+          out.uv.push_back(atlasUv(charts[c], charts[c].chart.project(mesh.positions[v]), size));
         }
         out.indices[corner] = newVertex[v];
       }
@@ -249,14 +305,23 @@ core::MeshCharts ChartLayout::cutMesh(const core::Mesh& mesh, const std::vector<
   return out;
 }
 
-/// A mesh that shows no irradiance keeps its vertices; all lie at one point.
-core::MeshCharts ChartLayout::wholeMesh(const core::Mesh& mesh, const core::Vec2& uv) {
+/// A mesh that shows no irradiance, or keeps its second UV set, keeps its vertices.
+core::MeshCharts ChartLayout::wholeMesh(const core::Mesh& mesh, std::vector<core::Vec2> uv) {
   core::MeshCharts out;
   out.sourceVertex.resize(mesh.positions.size());
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) out.sourceVertex[v] = static_cast<std::uint32_t>(v);
-  out.uv.assign(mesh.positions.size(), uv);
+  out.uv = std::move(uv);
   out.indices = mesh.indices;
   return out;
+}
+
+core::MeshCharts ChartLayout::keptMesh(std::uint32_t m, int size) const {
+  const core::Mesh& mesh = scene_.meshes[m];
+  std::vector<core::Vec2> uv;
+  uv.reserve(mesh.uv1.size());
+  for (const core::Vec2& uv1 : mesh.uv1)
+    uv.push_back(atlasUv(charts_[m].front(), own_[m].project(uv1), size));
+  return wholeMesh(mesh, std::move(uv));
 }
 
 }  // namespace saccade::raytrace

@@ -9,11 +9,12 @@
 #include "core/maps.h"
 #include "core/scene/scene.h"
 #include "raytrace/bake/chart_clusters.h"
+#include "raytrace/bake/own_atlas.h"
 
 namespace saccade::raytrace {
 
-/// What has a texel density of its own: a chart of a mesh that one object uses, or all charts of an object
-/// that shares its mesh.
+/// What has a texel density of its own: a chart of a mesh that one object uses, all charts of an object
+/// that shares its mesh, or of one that keeps its second UV set.
 struct LayoutItem {
   double rectangle = 0;      ///< m^2 that its charts' rectangles take
   double largestExtent = 0;  ///< m, of a chart
@@ -23,10 +24,14 @@ struct LayoutItem {
 class ChartLayout {
  public:
   /// Cuts the meshes of a loaded, not yet charted scene, about a microsecond per triangle. `scene` must
-  /// outlive it; it may be charted meanwhile.
-  explicit ChartLayout(const core::Scene& scene);
+  /// outlive it; it may be charted meanwhile. A second UV set that is a proper atlas (own_atlas.h) stays as
+  /// it is, one rectangle that holds all charts of its mesh. `mostTexels`: that the atlas may have; to keep
+  /// their gutters, meshes take up to half of it, each by its surface.
+  explicit ChartLayout(const core::Scene& scene, double mostTexels = 1 << 20);
 
   std::size_t chartCount() const { return count_ + (shared_ ? 1 : 0); }
+  /// Of meshes that show irradiance.
+  const AtlasCounts& ownAtlases() const { return ownAtlases_; }
   const std::vector<LayoutItem>& items() const { return items_; }
   /// Of an object that shows irradiance.
   std::size_t itemOf(std::size_t object, std::size_t triangle) const;
@@ -47,7 +52,8 @@ class ChartLayout {
   };
   struct PlacedChart {
     Chart chart;
-    Place place;  ///< in the atlas, or in the block of an instanced mesh
+    Place place;                             ///< in the atlas, or in the block of an instanced mesh
+    double coarsestTexel = core::kInfinity;  ///< m, in the mesh's space
   };
   /// The charts of an instanced mesh, packed.
   struct Block {
@@ -65,18 +71,24 @@ class ChartLayout {
 
   bool isLit(const core::Object& object) const;
   void addInstance(std::size_t o, std::size_t& block);
-  std::vector<PlacedChart>& clustered(std::uint32_t mesh);
+  void shareTexels(double mostTexels);
+  std::vector<PlacedChart>& chartsOf(std::uint32_t mesh);
+  void keepAtlas(std::uint32_t mesh);
   void addItem(const std::vector<PlacedChart>& charts, std::size_t first, std::size_t last, double unit);
   void size(std::span<const double> texelMetres);
   bool packBlock(Block& block, int size);
   static bool packRects(const std::vector<Place*>& places, int width, int height);
-  static core::Vec2 atlasUv(const PlacedChart& placed, const core::Vec3& position, int size);
+  static core::Vec2 atlasUv(const PlacedChart& placed, const glm::dvec2& projected, int size);
   static core::MeshCharts cutMesh(const core::Mesh& mesh, const std::vector<PlacedChart>& charts, int size);
-  static core::MeshCharts wholeMesh(const core::Mesh& mesh, const core::Vec2& uv);
+  static core::MeshCharts wholeMesh(const core::Mesh& mesh, std::vector<core::Vec2> uv);
+  core::MeshCharts keptMesh(std::uint32_t mesh, int size) const;
 
   const core::Scene& scene_;
   std::vector<std::vector<PlacedChart>> charts_;             ///< by mesh
   std::vector<std::vector<std::uint32_t>> chartOfTriangle_;  ///< by mesh
+  std::vector<OwnAtlas> own_;                                ///< by mesh
+  std::vector<double> shares_;                               ///< by mesh: texels that an own atlas may take
+  AtlasCounts ownAtlases_{};
   std::vector<LayoutItem> items_;
   std::vector<std::size_t> firstItem_;  ///< by object
   std::vector<std::uint32_t> order_;    ///< meshes in world space, in the order of their objects

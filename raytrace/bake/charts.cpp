@@ -14,6 +14,8 @@ constexpr double kFirstFill = 0.85;     // share of the atlas that charts could 
 constexpr double kCoarsenStep = 1.06;   // texel side grows by this until all fits
 constexpr double kWorthDoubling = 2.0;  // coarser than this times the wish: take a larger atlas
 
+int plannedSize(const core::Plan& plan) { return plan.lightmapSize > 0 ? plan.lightmapSize : kDefaultSize; }
+
 /// Smallest texel side >= wish at which everything fits; 0 when not even one texel a chart fits.
 double packFrom(ChartLayout& layout, double wish, int size) {
   double largest = 0;
@@ -28,8 +30,7 @@ double packFrom(ChartLayout& layout, double wish, int size) {
 void chooseSize(ChartAtlas& out, ChartLayout& layout, const core::Plan& plan, int maxAtlasSize) {
   double area = 0;
   for (const LayoutItem& item : layout.items()) area += item.rectangle;
-  out.size =
-      std::clamp(plan.lightmapSize > 0 ? plan.lightmapSize : kDefaultSize, 1, std::max(maxAtlasSize, 1));
+  out.size = std::clamp(plannedSize(plan), 1, std::max(maxAtlasSize, 1));
   for (;; out.size = std::min(2 * out.size, maxAtlasSize)) {
     const double fits = std::sqrt(area / (kFirstFill * out.size * static_cast<double>(out.size)));
     const double wish = std::max(fits, 1e-9);
@@ -55,9 +56,11 @@ bool showsIrradiance(const core::Material& m) {
 }
 
 ChartAtlas makeCharts(const core::Scene& scene, const core::Plan& plan, int maxAtlasSize) {
-  ChartLayout layout(scene);
+  const double side = std::min(plannedSize(plan), std::max(maxAtlasSize, 1));
+  ChartLayout layout(scene, side * side);
   ChartAtlas out;
   out.chartCount = layout.chartCount();
+  out.ownAtlases = layout.ownAtlases();
   chooseSize(out, layout, plan, maxAtlasSize);
   out.charts = layout.cut(out.size);
   return out;

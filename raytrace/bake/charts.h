@@ -6,6 +6,8 @@
 // tenths). Charts are stretched to whole texels (a chart's rectangle side is rounded), so that straight walls
 // end at a texel's border and no texel is covered by a sliver only.
 //
+// A mesh whose second UV set is a proper atlas (own_atlas.h) keeps that instead, as one rectangle.
+//
 // An instanced mesh is cut once; its charts are packed into a block, and each object has such a block in the
 // atlas, larger by a power of two where the object is larger.
 #pragma once
@@ -16,6 +18,7 @@
 #include "core/maps.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
+#include "raytrace/bake/own_atlas.h"
 
 namespace saccade::raytrace {
 
@@ -25,7 +28,8 @@ struct ChartAtlas {
   /// Side of a texel on a surface parallel to its chart. On instances within a factor of sqrt(2): their sizes
   /// count as powers of two times that of the smallest with the same mesh.
   float texelMetres = 0;
-  std::size_t chartCount = 0;
+  std::size_t chartCount = 0;  ///< an atlas that a mesh brings counts as one
+  AtlasCounts ownAtlases{};    ///< meshes that bring one, and the others by reason
 };
 
 /// Whether the base layer ever shows irradiance on this material: it has a Lambert part. Metals, clear glass,

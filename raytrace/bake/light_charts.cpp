@@ -88,12 +88,14 @@ VariationOptions probesOf(const ChartLayout& layout, const LightChartOptions& op
 LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const LightChartOptions& options,
                          const core::Progress& progress) {
   const Wish& wish = wishOf(options.quality);
-  ChartLayout layout(scene);
+  const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
+  const double mostTexels = std::min(wish.texels, kMostFill * largest * largest);
+  ChartLayout layout(scene, mostTexels);
   const double even = std::max(std::sqrt(rectangleOf(layout) / kProbeFill) / kProbeSize, 1e-9);
   std::vector<double> sides(layout.items().size(), even);
   LightCharts out;
   out.atlas.chartCount = layout.chartCount();
-  const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
+  out.atlas.ownAtlases = layout.ownAtlases();
   const int probeSize = packWithin(layout, sides, largest);
   out.atlas.charts = layout.cut(probeSize);
   core::applyCharts(scene, out.atlas.charts);
@@ -105,8 +107,7 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
       measureVariation(*out.world, texels, layout, probes, progress);
   DensityGoal goal;
   goal.relativeError = wish.relativeError;
-  const double cap = static_cast<double>(largest) * largest;
-  goal.mostTexels = std::min(wish.texels, kMostFill * cap);
+  goal.mostTexels = mostTexels;
   goal.coarsest = plan.coarsestTexel > 0 ? wish.coarsest * static_cast<double>(plan.coarsestTexel) : even;
   goal.finest = static_cast<double>(plan.finestTexel);
   DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);

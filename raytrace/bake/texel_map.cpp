@@ -12,14 +12,29 @@
 namespace saccade::raytrace {
 namespace {
 
-/// Chart number of each triangle, from 0: triangles are of one chart when they share a vertex or a place in
-/// the atlas. Charts are found from the uv alone so that maps read from a file need no list of them.
-std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
+double worldArea(const core::Mesh& mesh, const glm::dmat3& meshToWorld, std::size_t t) {
+  const glm::dvec3 a = mesh.positions[mesh.indices[3 * t]];
+  const glm::dvec3 b = mesh.positions[mesh.indices[3 * t + 1]];
+  const glm::dvec3 c = mesh.positions[mesh.indices[3 * t + 2]];
+  return 0.5 * glm::length(glm::cross(meshToWorld * (b - a), meshToWorld * (c - a)));
+}
+
+/// In texels of the atlas, with the roundings of the tracer's look-ups.
+Plane2 texelPosition(const core::Scene& scene, std::size_t object, std::size_t corner, int size) {
+  const core::Object& o = scene.objects[object];
+  const core::Mesh& mesh = scene.meshOf(o);
+  return Plane2(core::placeInAtlas(o.lightmapScaleOffset, mesh.lightmapUv[mesh.indices[corner]])) *
+         static_cast<double>(size);
+}
+
+}  // namespace
+
+std::vector<std::int32_t> chartsOfUv(const core::Mesh& mesh, std::span<const core::Vec2> uvs) {
   core::UnionFind parts(mesh.positions.size());
   std::unordered_map<std::uint64_t, std::uint32_t> byUv;
-  byUv.reserve(mesh.lightmapUv.size());
-  for (std::size_t v = 0; v < mesh.lightmapUv.size(); ++v) {
-    const core::Vec2 uv = mesh.lightmapUv[v];
+  byUv.reserve(uvs.size());
+  for (std::size_t v = 0; v < uvs.size(); ++v) {
+    const core::Vec2 uv = uvs[v];
     const std::uint64_t key =
         (std::uint64_t{std::bit_cast<std::uint32_t>(uv.x)} << 32) | std::bit_cast<std::uint32_t>(uv.y);
     const auto self = static_cast<std::uint32_t>(v);
@@ -38,23 +53,6 @@ std::vector<std::int32_t> chartsOfMesh(const core::Mesh& mesh) {
   }
   return out;
 }
-
-double worldArea(const core::Mesh& mesh, const glm::dmat3& meshToWorld, std::size_t t) {
-  const glm::dvec3 a = mesh.positions[mesh.indices[3 * t]];
-  const glm::dvec3 b = mesh.positions[mesh.indices[3 * t + 1]];
-  const glm::dvec3 c = mesh.positions[mesh.indices[3 * t + 2]];
-  return 0.5 * glm::length(glm::cross(meshToWorld * (b - a), meshToWorld * (c - a)));
-}
-
-/// In texels of the atlas, with the roundings of the tracer's look-ups.
-Plane2 texelPosition(const core::Scene& scene, std::size_t object, std::size_t corner, int size) {
-  const core::Object& o = scene.objects[object];
-  const core::Mesh& mesh = scene.meshOf(o);
-  return Plane2(core::placeInAtlas(o.lightmapScaleOffset, mesh.lightmapUv[mesh.indices[corner]])) *
-         static_cast<double>(size);
-}
-
-}  // namespace
 
 TexelMap::TexelMap(const core::Scene& charted, int size) : scene_(charted), size_(size) {
   chartOf_.assign(texelCount(), -1);
@@ -76,7 +74,7 @@ void TexelMap::findCharts() {
                         "' has no charts; call applyCharts first");
     }
     std::vector<std::int32_t>& chartOf = chartOfTriangle_[object.mesh];
-    if (chartOf.empty()) chartOf = chartsOfMesh(mesh);
+    if (chartOf.empty()) chartOf = chartsOfUv(mesh, mesh.lightmapUv);
     firstChart_[o] = static_cast<std::int32_t>(charts_.size());
     const std::int32_t count = chartOf.empty() ? 0 : 1 + *std::max_element(chartOf.begin(), chartOf.end());
     charts_.resize(charts_.size() + static_cast<std::size_t>(count),

@@ -23,6 +23,11 @@ struct ChartRect {
   bool doubleSided = false;  ///< its back has its own irradiance, in layer 1
 };
 
+/// Chart number of each triangle, from 0: triangles are of one chart when they share a vertex or a place in
+/// the atlas. `uvs`: one per vertex. Charts are found from the uv alone so that maps read from a file need no
+/// list of them.
+std::vector<std::int32_t> chartsOfUv(const core::Mesh& mesh, std::span<const core::Vec2> uvs);
+
 /// The part of a texel that holds surface.
 struct TexelCover {
   Plane2 centroid{0};  ///< in the atlas, in texels
