@@ -93,7 +93,7 @@ TEST(LightExport, TexturesHoldIrradianceAndWhatTheBaseLayerShows) {
   const raytrace::TexelMap texels(w.scene, w.maps.width);
   ASSERT_EQ(light.emission.width(), w.maps.width);  // nothing is textured
   const core::Srgb8& code = core::Srgb8::table();
-  std::size_t seen = 0;
+  std::size_t seen = 0, exact = 0;
   for (std::size_t i = 0; i < texels.texelCount(); i += 7) {
     if (texels.chartOf(i) < 0) continue;
     ++seen;
@@ -105,11 +105,15 @@ TEST(LightExport, TexturesHoldIrradianceAndWhatTheBaseLayerShows) {
     const Vec3 albedo =
         w.scene.materials[material].baseColor * w.world->material(object.material).diffuseFactor;
     const core::Rgba8 shown = light.lightmap.at(x, y), left = light.emission.at(x, y);
-    EXPECT_EQ(shown.g, code(lightmap.y / scale.irradiance)) << x << ' ' << y;
+    const int expected = code(lightmap.y / scale.irradiance);
+    exact += shown.g == expected;
+    EXPECT_NEAR(shown.g, expected, 1) << x << ' ' << y;
     const Vec3 radiance = w.scene.materials[material].emission + albedo * lightmap;
     EXPECT_NEAR(left.g, code(radiance.y / scale.radiance), 1) << x << ' ' << y;
   }
-  EXPECT_GT(seen, 10000u);
+  EXPECT_GT(seen, 4000u);
+  // A texel that a chart's border cuts holds the mean of the part it has, not the value at its centre.
+  EXPECT_GT(exact, seen - seen / 100);
 }
 
 TEST(LightExport, TheCommandExportsWithoutBakingTwice) {
