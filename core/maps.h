@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/map_detail.h"
 #include "core/scene/scene.h"
 
 namespace saccade::core {
@@ -29,6 +30,7 @@ struct SceneCharts {
 struct IlluminationMaps {
   int width = 0, height = 0, layers = 0;
   std::vector<std::uint16_t> texels;  ///< IEEE half, 3 per texel: ((layer * height + y) * width + x) * 3
+  MapDetail detail;
   SceneCharts charts;
   std::string quality;  ///< preview, medium, high
   std::uint64_t photons = 0;
