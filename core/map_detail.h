@@ -1,9 +1,9 @@
 // Finer texels of illumination maps where light steps.
 //
-// A texel of the atlas may have a block: side x side cells with a border of one around them, so that bilinear
-// look-ups need nothing beside it. A look-up at uv takes the texel t = floor(uv * size), clamped to the
-// atlas; without a block it is bilinear between the atlas's texels as ever; with one it is bilinear between
-// the block's cells at corner + fract(uv * size) * side, cells' centres at + 0.5.
+// A texel of the atlas may have a block: columns x rows cells with a border of one around them, so that
+// bilinear look-ups need nothing beside it. A look-up at uv takes the texel t = floor(uv * size), clamped to
+// the atlas; without a block it is bilinear between the atlas's texels as ever; with one it is bilinear
+// between the block's cells at corner + fract(uv * size) * (columns, rows), cells' centres at + 0.5.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,28 @@
 
 namespace saccade::core {
 
-/// Where a block lies in MapDetail: its cells are [x, x + side) x [y, y + side), its border one around them.
+/// Where a block lies in MapDetail: its cells are [x, x + columns) x [y, y + rows), its border one around.
 struct MapBlock {
-  int x = 0, y = 0;  ///< [0, 2^14)
-  int log2Side = 0;  ///< [1, 7]
+  static constexpr int kMostLog2 = 7;
+  static constexpr int kLargestCoordinate = (1 << 13) - 1;
+
+  int x = 0, y = 0;                   ///< [1, kLargestCoordinate]
+  int log2Columns = 0, log2Rows = 0;  ///< [0, kMostLog2], not both 0
+  int columns() const { return 1 << log2Columns; }
+  int rows() const { return 1 << log2Rows; }
 
   bool operator==(const MapBlock&) const = default;
+  /// Never 0.
   std::uint32_t packed() const {
-    return static_cast<std::uint32_t>(log2Side) << 28 | static_cast<std::uint32_t>(y) << 14 |
-           static_cast<std::uint32_t>(x);
+    return static_cast<std::uint32_t>(log2Rows) << 29 | static_cast<std::uint32_t>(log2Columns) << 26 |
+           static_cast<std::uint32_t>(y) << 13 | static_cast<std::uint32_t>(x);
   }
   static MapBlock unpack(std::uint32_t packed) {
-    constexpr std::uint32_t kCoordinate = (1u << 14) - 1;
-    return {static_cast<int>(packed & kCoordinate), static_cast<int>(packed >> 14 & kCoordinate),
-            static_cast<int>(packed >> 28)};
+    const auto field = [packed](int from, std::uint32_t most) {
+      return static_cast<int>(packed >> from & most);
+    };
+    return {field(0, kLargestCoordinate), field(13, kLargestCoordinate), field(26, kMostLog2),
+            field(29, kMostLog2)};
   }
 };
 
