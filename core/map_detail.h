@@ -41,6 +41,12 @@ struct MapDetail {
   std::vector<std::uint32_t>
       blocks;  ///< per texel of the atlas: MapBlock::packed, 0 = none; empty: no detail
   std::vector<std::uint16_t> texels;  ///< half RGB, all layers: ((layer * height + y) * width + x) * 3
+
+  bool empty() const { return blocks.empty(); }
 };
+
+/// Whether look-ups in an atlas of this size stay within `detail`: its counts are right, and every block lies
+/// inside with its border. Blocks may share texels.
+bool fits(const MapDetail& detail, int width, int height, int layers);
 
 }  // namespace saccade::core

@@ -1,12 +1,7 @@
 #include "core/maps.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
 
-#include "core/atomic_file.h"
-#include "core/byte_reader.h"
 #include "core/cache_folder.h"
 #include "core/content_hash.h"
 #include "core/light_state.h"
@@ -15,85 +10,6 @@
 
 namespace saccade::core {
 namespace {
-
-// The file: magic, version, byte order mark, key, size, layers, photons, quality, texels, charts, places,
-// checksum of all that precedes it. Numbers in the machine's byte order, which the mark tells.
-constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'M', 'A', 'P', 'S', '\n'};
-constexpr std::uint32_t kVersion = 2;
-constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kLargestSide = 65536;
-
-class Writer {
- public:
-  template <class T>
-  void number(T value) {
-    raw(&value, sizeof value);
-  }
-  template <class T>
-  void array(const std::vector<T>& values) {
-    number<std::uint64_t>(values.size());
-    raw(values.data(), values.size() * sizeof(T));
-  }
-  void raw(const void* data, std::size_t bytes) {
-    const auto* from = static_cast<const std::uint8_t*>(data);
-    bytes_.insert(bytes_.end(), from, from + bytes);
-  }
-  std::vector<std::uint8_t>& bytes() { return bytes_; }
-
- private:
-  std::vector<std::uint8_t> bytes_;
-};
-
-std::uint64_t checksum(std::span<const std::uint8_t> bytes) {
-  ContentHash hash;
-  hash.add(bytes);
-  return hash.value();
-}
-
-void readHeader(ByteReader& in, IlluminationMaps& maps, std::uint64_t key) {
-  if (in.number<std::array<char, 8>>() != kMagic) in.refuse("is none (wrong first bytes)");
-  const auto version = in.number<std::uint32_t>();
-  if (in.number<std::uint32_t>() != kByteOrder) in.refuse("was written on a machine of another byte order");
-  if (version != kVersion)
-    in.refuse("has version " + std::to_string(version) + ", must be " + std::to_string(kVersion));
-  maps.key = in.number<std::uint64_t>();
-  if (key != 0 && maps.key != key) in.refuse("belongs to another scene or another state of it");
-  const auto width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>(),
-             layers = in.number<std::uint32_t>();
-  if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide || layers < 1 || layers > 2)
-    in.refuse("states an impossible size");
-  maps.width = static_cast<int>(width);
-  maps.height = static_cast<int>(height);
-  maps.layers = static_cast<int>(layers);
-  maps.photons = in.number<std::uint64_t>();
-  const std::vector<char> quality = in.array<char>();
-  maps.quality.assign(quality.begin(), quality.end());
-}
-
-void readTexels(ByteReader& in, IlluminationMaps& maps) {
-  maps.texels = in.array<std::uint16_t>();
-  const std::uint64_t wanted = std::uint64_t{3} * static_cast<std::uint64_t>(maps.width) *
-                               static_cast<std::uint64_t>(maps.height) *
-                               static_cast<std::uint64_t>(maps.layers);
-  if (maps.texels.size() != wanted) in.refuse("holds another number of texels than its size says");
-  constexpr std::uint16_t kExponent = 0x7C00;
-  if (std::any_of(maps.texels.begin(), maps.texels.end(),
-                  [](std::uint16_t t) { return (t & kExponent) == kExponent; }))
-    in.refuse("holds texels that are not finite");
-}
-
-MeshCharts readCharts(ByteReader& in) {
-  MeshCharts charts;
-  charts.sourceVertex = in.array<std::uint32_t>();
-  charts.uv = in.array<Vec2>();
-  charts.indices = in.array<std::uint32_t>();
-  const std::size_t vertices = charts.sourceVertex.size();
-  const bool good = charts.uv.size() == vertices && charts.indices.size() % 3 == 0 &&
-                    std::all_of(charts.indices.begin(), charts.indices.end(),
-                                [&](std::uint32_t i) { return i < vertices; });
-  if (!good) in.refuse("holds charts that do not fit together");
-  return charts;
-}
 
 template <class V>
 void addVector(ContentHash& hash, const V& v) {
@@ -221,7 +137,7 @@ void checkCounts(const Scene& scene, const SceneCharts& charts) {
 /// All but what shines.
 ContentHash unlitHash(const Scene& scene) {
   ContentHash hash;
-  hash.add(kVersion);
+  hash.add(kMapsVersion);
   hash.add(static_cast<std::uint64_t>(scene.objects.size()));
   for (const Object& o : scene.objects) addObject(hash, o);
   hash.add(static_cast<std::uint64_t>(scene.meshes.size()));
@@ -243,6 +159,11 @@ Vec3 IlluminationMaps::texel(int x, int y, int layer) const {
   const std::size_t at =
       ((plane * static_cast<std::size_t>(height) + row) * static_cast<std::size_t>(width) + column) * 3;
   return Vec3(fromHalf(texels[at]), fromHalf(texels[at + 1]), fromHalf(texels[at + 2]));
+}
+
+std::size_t IlluminationMaps::lightBytes() const {
+  return (texels.size() + detail.texels.size()) * sizeof(std::uint16_t) +
+         detail.blocks.size() * sizeof(std::uint32_t);
 }
 
 void applyCharts(Scene& scene, const SceneCharts& charts) {
@@ -294,51 +215,6 @@ std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& sett
   hash.add(key);
   hash.add(settings);
   return cacheFolder() / (cacheName(hash.value()) + ".maps");
-}
-
-IlluminationMaps readMaps(const std::filesystem::path& file, std::uint64_t key) {
-  const std::vector<std::uint8_t> bytes = readWholeFile(file);
-  constexpr std::size_t kSum = sizeof(std::uint64_t);
-  const std::size_t body = bytes.size() < kSum ? 0 : bytes.size() - kSum;
-  const std::span<const std::uint8_t> content(bytes.data(), body);
-  ByteReader in(content, file.string(), "illumination map file", "bake again");
-  IlluminationMaps maps;
-  readHeader(in, maps, key);
-  std::uint64_t stated = 0;
-  std::memcpy(&stated, bytes.data() + body, kSum);
-  if (stated != checksum(content)) in.refuse("is damaged or cut off (checksum)");
-  readTexels(in, maps);
-  const auto meshes = in.number<std::uint64_t>();
-  if (meshes > body) in.refuse("states an impossible number of meshes");
-  for (std::uint64_t m = 0; m < meshes; ++m) maps.charts.meshes.push_back(readCharts(in));
-  maps.charts.places = in.array<Vec4>();
-  if (!in.atEnd()) in.refuse("has bytes after its end");
-  return maps;
-}
-
-void writeMaps(const std::filesystem::path& file, const IlluminationMaps& maps) {
-  Writer out;
-  out.number(kMagic);
-  out.number(kVersion);
-  out.number(kByteOrder);
-  out.number(maps.key);
-  out.number(static_cast<std::uint32_t>(maps.width));
-  out.number(static_cast<std::uint32_t>(maps.height));
-  out.number(static_cast<std::uint32_t>(maps.layers));
-  out.number(maps.photons);
-  out.array(std::vector<char>(maps.quality.begin(), maps.quality.end()));
-  out.array(maps.texels);
-  out.number<std::uint64_t>(maps.charts.meshes.size());
-  for (const MeshCharts& c : maps.charts.meshes) {
-    out.array(c.sourceVertex);
-    out.array(c.uv);
-    out.array(c.indices);
-  }
-  out.array(maps.charts.places);
-  out.number(checksum(out.bytes()));
-  std::error_code ignored;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
-  writeFileAtomically(file, out.bytes());
 }
 
 }  // namespace saccade::core

@@ -13,6 +13,9 @@
 
 namespace saccade::core {
 
+/// Of the file, and of what bakes make of a scene: files of another version are refused.
+inline constexpr std::uint32_t kMapsVersion = 3;
+
 /// How a mesh is cut into charts: its vertices are duplicated along chart borders.
 struct MeshCharts {
   std::vector<std::uint32_t> sourceVertex;  ///< new vertex -> vertex of the loaded mesh
@@ -30,7 +33,7 @@ struct SceneCharts {
 struct IlluminationMaps {
   int width = 0, height = 0, layers = 0;
   std::vector<std::uint16_t> texels;  ///< IEEE half, 3 per texel: ((layer * height + y) * width + x) * 3
-  MapDetail detail;
+  MapDetail detail;                   ///< finer texels where light steps
   SceneCharts charts;
   std::string quality;  ///< preview, medium, high
   std::uint64_t photons = 0;
@@ -41,6 +44,8 @@ struct IlluminationMaps {
 
   /// Decoded texel; x, y clamped to the atlas.
   Vec3 texel(int x, int y, int layer) const;
+  /// Memory of what look-ups read: texels and detail; without the charts.
+  std::size_t lightBytes() const;
 };
 
 /// Cuts the scene's meshes as the charts say, fills lightmapUv and places the objects. Call once, before

@@ -24,6 +24,10 @@ IlluminationMaps sample() {
   maps.height = 3;
   maps.layers = 2;
   for (int i = 0; i < 4 * 3 * 2 * 3; ++i) maps.texels.push_back(toHalf(0.25f * static_cast<float>(i)));
+  maps.detail.height = 4;
+  maps.detail.blocks.assign(4 * 3, 0);
+  maps.detail.blocks[5] = MapBlock{1, 1, 1, 1}.packed();
+  for (int i = 0; i < 4 * 4 * 2 * 3; ++i) maps.detail.texels.push_back(toHalf(0.5f * static_cast<float>(i)));
   maps.charts.meshes.resize(2);
   maps.charts.places = {Vec4(1, 1, 0, 0), Vec4(4, 4, 0.5f, 0.25f), Vec4(0, 0, 0.1f, 0.2f)};
   maps.charts.meshes[0].sourceVertex = {0, 1, 2, 2};
@@ -73,6 +77,9 @@ TEST(Maps, RoundTrip) {
   EXPECT_EQ(back.height, maps.height);
   EXPECT_EQ(back.layers, maps.layers);
   EXPECT_EQ(back.texels, maps.texels);
+  EXPECT_EQ(back.detail.height, maps.detail.height);
+  EXPECT_EQ(back.detail.blocks, maps.detail.blocks);
+  EXPECT_EQ(back.detail.texels, maps.detail.texels);
   EXPECT_EQ(back.quality, maps.quality);
   EXPECT_EQ(back.photons, maps.photons);
   EXPECT_EQ(back.key, maps.key);
@@ -115,6 +122,40 @@ TEST(Maps, TexelsThatAreNotFiniteAreRefused) {
   maps.texels[5] = 0x7E00;
   writeMaps(folder / "nan.maps", maps);
   EXPECT_THROW(readMaps(folder / "nan.maps", 0), Error);
+  maps = sample();
+  maps.detail.texels.back() = 0xFC00;
+  writeMaps(folder / "infinite.maps", maps);
+  EXPECT_THROW(readMaps(folder / "infinite.maps", 0), Error);
+}
+
+TEST(Maps, DetailThatDoesNotFitIsRefused) {
+  TemporaryFolder folder;
+  IlluminationMaps maps = sample();
+  maps.detail.blocks[5] = MapBlock{2, 1, 1, 1}.packed();
+  writeMaps(folder / "a.maps", maps);
+  EXPECT_THROW(readMaps(folder / "a.maps", 0), Error);
+  maps.detail = {};
+  writeMaps(folder / "a.maps", maps);
+  EXPECT_TRUE(readMaps(folder / "a.maps", 0).detail.empty());
+}
+
+TEST(Maps, AnotherVersionsFileIsRefusedByItsVersion) {
+  TemporaryFolder folder;
+  writeMaps(folder / "a.maps", sample());
+  std::string bytes = bytesOf(folder / "a.maps");
+  bytes[8] = 2;  // after the magic
+  write(folder / "old.maps", bytes);
+  try {
+    readMaps(folder / "old.maps", 0);
+    ADD_FAILURE() << "was read";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("has version 2, must be 3; bake again"), std::string::npos)
+        << e.what();
+  }
+}
+
+TEST(Maps, LightBytesAreWhatTheVectorsHold) {
+  EXPECT_EQ(sample().lightBytes(), 4 * 3 * 2 * 6u + 4 * 3 * 4u + 4 * 4 * 2 * 6u);
 }
 
 TEST(Maps, TexelDecodesAndClamps) {
