@@ -1,12 +1,13 @@
 #include "bench/growth/frame.h"
 
 #include <algorithm>
+#include <functional>
 #include <random>
 
 #include "app/session/headless.h"
 #include "app/session/stats.h"
 #include "bench/harness/trials.h"
-#include "core/composite.h"
+#include "bench/harness/untraced_frame.h"
 #include "core/error.h"
 #include "core/scene/plan.h"
 #include "render/splat/sample_cache.h"
@@ -57,51 +58,35 @@ core::SampleBatch samplesOn(const core::FrameSnapshot& frame, const core::Scene&
   return batch;
 }
 
-using Stages = std::map<std::string, std::vector<double>>;  // ms, by frame
-
-/// The steps of FrameLoop::beginFrame and the composite.
+/// A renderer of its own, and a cache that is filled once.
 class Frames {
  public:
   Frames(const core::Scene& scene, const FrameSize& size)
-      : scene_(scene), size_(size), cache_(2 * size.samples * sizeof(core::Sample) + (1u << 20)) {
+      : scene_(scene),
+        size_(size),
+        context_(makeContext()),
+        renderer_(*context_, scene),
+        cache_(2 * size.samples * sizeof(core::Sample) + (1u << 20)),
+        picture_(renderer_, kKeepAll) {
+    renderer_.setMaps(nullptr);
+    fill();
+  }
+
+  UntracedFrame next() { return picture_.draw(view(++number_), cache_); }
+
+ private:
+  static std::unique_ptr<render::GlContext> makeContext() {
     render::setSoftwareRasterThreads(app::rasterThreads(1));
-    context_ = render::makeHeadlessContext(render::ContextKind::osmesa);
-    renderer_ = std::make_unique<render::BaseRenderer>(*context_, scene);
-    renderer_->setMaps(nullptr);
+    return render::makeHeadlessContext(render::ContextKind::osmesa);
   }
 
   void fill() {
     const core::View first = view(0);
     cache_.age(first, kKeepAll);
-    const auto frame = renderer_->render(first, cache_.cameraAge(), kKeepAll.nMin);
+    const auto frame = renderer_.render(first, cache_.cameraAge(), kKeepAll.nMin);
     cache_.add(samplesOn(*frame, scene_, size_.samples), cache_.cameraAge());
   }
 
-  /// Returns the samples that were splatted.
-  std::size_t next(Stages* stages) {
-    ++number_;
-    render::SampleCache::WarpResult warped;
-    const core::View now = view(number_);
-    const auto stage = [&](const char* name, const auto& work) {
-      const double ms = 1000 * timed(work);
-      if (stages) (*stages)[name].push_back(ms);
-      return ms;
-    };
-    double whole = stage("age", [&] { cache_.age(now, kKeepAll); });
-    core::FramePtr frame;
-    whole += stage("draw", [&] { frame = renderer_->render(now, cache_.cameraAge(), kKeepAll.nMin); });
-    whole += stage("warp", [&] {
-      layer_.beginFrame(frame);
-      warped = cache_.warp(*frame, layer_);
-    });
-    whole += stage("composite", [&] {
-      core::compositeDisplay(size_.side, size_.side, frame->baseAndId, layer_.pixels(), 0, display_);
-    });
-    if (stages) (*stages)["frame"].push_back(whole);
-    return warped.splatted;
-  }
-
- private:
   /// To and fro sideways, by a hundredth of the distance to the balls.
   core::View view(int number) const {
     core::Camera camera = scene_.cameras[0];
@@ -116,11 +101,21 @@ class Frames {
   const FrameSize& size_;
   int number_ = 0;
   std::unique_ptr<render::GlContext> context_;
-  std::unique_ptr<render::BaseRenderer> renderer_;
+  render::BaseRenderer renderer_;
   render::SampleCache cache_;
-  render::CorrectionLayer layer_;
-  core::ImageRgba8 display_;
+  UntracedPicture picture_;
 };
+
+/// NAME, NAME_min and NAME_max of one stage.
+void addStage(Figures& figures, const std::string& name, const std::vector<UntracedFrame>& frames,
+              const std::function<double(const UntracedFrame&)>& ms) {
+  std::vector<double> values(frames.size());
+  std::transform(frames.begin(), frames.end(), values.begin(), ms);
+  const Spread s = spread(values);
+  figures[name] = s.median;
+  figures[name + "_min"] = s.min;
+  figures[name + "_max"] = s.max;
+}
 
 }  // namespace
 
@@ -145,25 +140,23 @@ Figures frameWithoutTracing(const Arguments& arguments, const std::stop_token& s
   const raytrace::World world(scene, core::makePlan(scene));
   Figures f = {{"build", secondsSince(start)}, {"scene_bytes", static_cast<double>(app::peakBytes())}};
   Frames frames(scene, size);
-  frames.fill();
-  Stages stages;
-  std::size_t splatted = 0;
-  for (int i = 0; i < kWarmUpFrames + kFrames; ++i) {
+  std::vector<UntracedFrame> drawn;
+  for (int i = -kWarmUpFrames; i < kFrames; ++i) {
     if (stop.stop_requested()) throw core::Error("stopped on request");
-    splatted = frames.next(i < kWarmUpFrames ? nullptr : &stages);
+    const UntracedFrame frame = frames.next();
+    if (i >= 0) drawn.push_back(frame);
   }
-  for (const auto& [name, ms] : stages) {
-    const Spread s = spread(ms);
-    f[name] = s.median;
-    f[name + "_min"] = s.min;
-    f[name + "_max"] = s.max;
-  }
+  addStage(f, "age", drawn, [](const UntracedFrame& t) { return t.age; });
+  addStage(f, "draw", drawn, [](const UntracedFrame& t) { return t.draw + t.read + t.measure; });
+  addStage(f, "warp", drawn, [](const UntracedFrame& t) { return t.warp; });
+  addStage(f, "composite", drawn, [](const UntracedFrame& t) { return t.composite; });
+  addStage(f, "frame", drawn, [](const UntracedFrame& t) { return t.total; });
   f["frames"] = kFrames;
   f["bytes"] = static_cast<double>(app::peakBytes());
   f["triangles"] = static_cast<double>(scene.triangleCount());
   f["stored_triangles"] = static_cast<double>(scene.storedTriangleCount());
   f["objects"] = static_cast<double>(scene.objects.size());
-  f["samples"] = static_cast<double>(splatted);
+  f["samples"] = drawn.back().splatted;
   f["pixels"] = static_cast<double>(size.side) * size.side;
   return f;
 }

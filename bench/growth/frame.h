@@ -15,12 +15,11 @@ struct FrameSize {
   static FrameSize of(const Arguments& arguments);
 };
 
-/// Child job. Age, draw and read back, warp and splat, composite, as FrameLoop::step does but with nothing
-/// traced: the camera moves a little before each frame. Samples lie on the mirrors, most of them of the
-/// finest level, as a walk leaves them. Figures: STAGE, STAGE_min, STAGE_max for age, draw, warp, composite
-/// and frame, ms over `frames` frames; bytes (peak of the process: scene, OpenGL's copy, rays' trees, cache),
-/// scene_bytes (before OpenGL and the cache); triangles, stored_triangles, objects, samples (those splatted
-/// in the last frame), pixels; build (s: scene, trees).
+/// Child job. UntracedPicture (bench/harness/untraced_frame.h); the camera moves a little before each frame.
+/// Samples lie on the mirrors, most of them of the finest level, as a walk leaves them. Figures: STAGE,
+/// STAGE_min, STAGE_max for age, draw, warp, composite and frame, ms over `frames` frames; bytes (peak of the
+/// process: scene, OpenGL's copy, rays' trees, cache), scene_bytes (before OpenGL and the cache); triangles,
+/// stored_triangles, objects, samples (those splatted in the last frame), pixels; build (s: scene, trees).
 Figures frameWithoutTracing(const Arguments& arguments, const std::stop_token& stop);
 
 }  // namespace saccade::bench

@@ -281,8 +281,8 @@ std::vector<Subject> subjectsOf(const Session& session) {
                     " of the shared folder is not here (set SACCADE_SHARED)");
     }
   }
-  std::vector<Subject> subjects;
-  for (const std::string& file : files) subjects.push_back(subjectOf(file));
+  std::vector<Subject> subjects(files.size());
+  std::transform(files.begin(), files.end(), subjects.begin(), subjectOf);
   return subjects;
 }
 

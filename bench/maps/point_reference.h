@@ -1,7 +1,6 @@
 // Path-traced irradiance at seeded points of a scene's surfaces, which illumination maps are measured
-// against: computed once, to a stated confidence, and kept beside the reference pictures (bench/reference),
-// in the same files: a point is a pixel of a picture one row high. What is torn, foreign or of another scene
-// is computed anew; a stopped computation goes on where it was, to the same numbers bit for bit.
+// against: computed once, to a stated confidence, and kept as the reference pictures are
+// (bench/reference/kept_sums.h): a point is a pixel of a picture one row high.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +22,8 @@ struct PointTask {
 };
 
 struct PointConfidence {
-  double noise = 0.01;  ///< noiseOf the reference
-  /// Of processor time over the threads, over all runs; then the reference stays as it is.
-  double capSeconds = 300;
+  double noise = 0.01;      ///< noiseOf the reference
+  double capSeconds = 300;  ///< SumsTask::capSeconds
 };
 
 struct PointReference {

@@ -2,7 +2,7 @@
 
 #include "bench/harness/method.h"
 #include "bench/paper/duck_scene.h"
-#include "bench/paper/untraced_frame.h"
+#include "bench/paper/untraced_walk.h"
 #include "core/composite.h"
 #include "core/metrics/comparison.h"
 #include "raytrace/bake/baker.h"

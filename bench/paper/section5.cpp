@@ -5,7 +5,7 @@
 #include "app/session/camera_path.h"
 #include "bench/harness/method.h"
 #include "bench/paper/lattice.h"
-#include "bench/paper/untraced_frame.h"
+#include "bench/paper/untraced_walk.h"
 
 namespace saccade::bench {
 namespace {

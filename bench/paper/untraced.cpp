@@ -1,6 +1,6 @@
 #include "bench/paper/untraced.h"
 
-#include "bench/paper/untraced_frame.h"
+#include "bench/paper/untraced_walk.h"
 
 namespace saccade::bench {
 namespace {

@@ -8,6 +8,7 @@
 #include "bench/peers/contender.h"
 #include "bench/peers/cycles.h"
 #include "bench/peers/rest.h"
+#include "bench/reference/kept_sums.h"
 #include "bench/reference/reference.h"
 #include "core/image_io.h"
 

@@ -1,16 +1,12 @@
 // Path-traced pictures of still views, which everything else is measured against: computed once, to a stated
 // confidence, and kept.
 //
-// A reference is the mean of two independent halves (sums.h). Passes of a fixed number of samples are added
-// until the estimated relative MSE of the mean is low enough, or until the time for it is used up. The sums
-// lie in <cache folder>/references/<key>.sums, are written every few seconds and when a stop is requested,
-// and are taken up again by the next run, so a stopped run loses at most a pass; what is taken up gives the
-// same picture, bit for bit, as what was never stopped. Beside them, for people and other programs:
-// <key>.exr, the picture, and <key>.json, what it is a picture of and how good it is.
+// A reference is the mean of two independent halves, made and kept as kept_sums.h says, until its estimated
+// relative MSE is low enough. Beside the sums, for people and other programs: <key>.exr, the picture, and
+// <key>.json, what it is a picture of and how good it is.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 
 #include "app/cli/options.h"
 #include "app/session/workspace.h"
@@ -34,10 +30,8 @@ struct ReferenceView {
 
 /// How good it has to be.
 struct Confidence {
-  double relmse = 1e-3;  ///< estimated relative MSE (core/metrics) of the reference itself
-  /// Computing time over all runs together, after which the reference stays as it is: processor time over the
-  /// threads, so that a busy machine does not make it worse.
-  double capSeconds = 100;
+  double relmse = 1e-3;     ///< estimated relative MSE (core/metrics) of the reference itself
+  double capSeconds = 100;  ///< SumsTask::capSeconds
 };
 
 struct Reference {
@@ -57,12 +51,9 @@ struct Reference {
 /// Hash of the scene's content, the view, the size, the transport, the seed and the path tracer's version.
 std::uint64_t referenceKey(const core::Scene& scene, const ReferenceView& view);
 
-/// <cache folder>/references/<key>.sums
-std::filesystem::path referenceFile(std::uint64_t key);
-
 /// From the cache where it is good enough, else computed with `threads` threads (0 = on the calling one),
-/// going on from what is there. Files that are torn or foreign are computed anew, and a cache folder that
-/// cannot be written is done without; `warnings` says so. Throws core::Error when stopped, after keeping what
+/// going on from what is there. A cache folder that cannot be written is done without; `warnings` says so.
+/// Throws core::Error when stopped, after keeping what
 /// was done.
 Reference computeReference(const app::Workspace& workspace, const ReferenceView& view,
                            const Confidence& confidence, int threads, const core::Progress& progress,

@@ -13,10 +13,10 @@
 #include "bench/maps/point_reference.h"
 #include "bench/maps/soonness.h"
 #include "bench/maps/worst_points.h"
-#include "bench/reference/reference.h"
+#include "bench/reference/kept_sums.h"
 #include "raytrace/bake/charts.h"
 #include "tests/command_line.h"
-#include "tests/unit/core/temporary_folder.h"
+#include "tests/unit/core/own_cache_folder.h"
 
 namespace saccade::bench {
 namespace {
@@ -94,22 +94,8 @@ std::unique_ptr<app::Workspace> charted(int atlasSize) {
   return w;
 }
 
-/// The cache folder is a test's own.
 class PointReferences : public ::testing::Test {
  protected:
-  PointReferences() {
-    const char* before = std::getenv("XDG_CACHE_HOME");
-    if (before) before_ = before;
-    ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
-  }
-  ~PointReferences() override {
-    if (before_) {
-      ::setenv("XDG_CACHE_HOME", before_->c_str(), 1);
-    } else {
-      ::unsetenv("XDG_CACHE_HOME");
-    }
-  }
-
   static const app::Workspace& cornell() {
     static const auto workspace = [] {
       app::SceneOptions options;
@@ -134,8 +120,7 @@ class PointReferences : public ::testing::Test {
     }
   }
 
-  tests::TemporaryFolder folder_;
-  std::optional<std::string> before_;
+  tests::OwnCacheFolder cache_;
   core::Warnings warnings_;
 };
 
@@ -229,7 +214,7 @@ TEST_F(PointReferences, TheGatherOfAllTexelsNearsThem) {
   EXPECT_GT(error.relative, 0.02);
   EXPECT_NEAR(error.bias, 0, 4 * error.relative / std::sqrt(static_cast<double>(error.lit)));
 
-  const std::filesystem::path csv = folder_.path() / "worst.csv";
+  const std::filesystem::path csv = cache_.folder().path() / "worst.csv";
   writeWorstPoints(csv, *opened->world, reference, found, 3);
   const std::string text = tests::slurp(csv);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;

@@ -7,7 +7,7 @@
 #include "bench/paper/duck_scene.h"
 #include "bench/paper/figure5.h"
 #include "bench/paper/figure6.h"
-#include "bench/paper/untraced_frame.h"
+#include "bench/paper/untraced_walk.h"
 #include "tests/shared_folder.h"
 
 namespace saccade::bench {

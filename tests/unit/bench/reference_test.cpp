@@ -11,29 +11,16 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench/reference/kept_sums.h"
 #include "bench/reference/sums.h"
 #include "core/image_io.h"
-#include "tests/unit/core/temporary_folder.h"
+#include "tests/unit/core/own_cache_folder.h"
 
 namespace saccade::bench {
 namespace {
 
-/// The cache folder is a test's own.
 class References : public ::testing::Test {
  protected:
-  References() {
-    const char* before = std::getenv("XDG_CACHE_HOME");
-    if (before) before_ = before;
-    ::setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1);
-  }
-  ~References() override {
-    if (before_) {
-      ::setenv("XDG_CACHE_HOME", before_->c_str(), 1);
-    } else {
-      ::unsetenv("XDG_CACHE_HOME");
-    }
-  }
-
   static const app::Workspace& cornell() {
     static const auto workspace = [] {
       app::SceneOptions options;
@@ -56,8 +43,7 @@ class References : public ::testing::Test {
   }
   static Confidence passable() { return {.relmse = 1e3, .capSeconds = 1e6}; }
 
-  tests::TemporaryFolder folder_;
-  std::optional<std::string> before_;
+  tests::OwnCacheFolder cache_;
   core::Warnings warnings_;
 };
 
@@ -106,7 +92,7 @@ TEST_F(References, AreComputedOnceAndKept) {
   const nlohmann::json about = nlohmann::json::parse(std::ifstream(text.replace_extension(".json")));
   EXPECT_EQ(about.at("samples_per_pixel"), 64);
   EXPECT_EQ(about.at("relmse"), first.own.relmse);
-  EXPECT_EQ(folder_.entries(), 1u) << "nothing but saccade/ in the cache";
+  EXPECT_EQ(cache_.folder().entries(), 1u) << "nothing but saccade/ in the cache";
 }
 
 TEST_F(References, GoOnWhereMoreConfidenceIsAsked) {

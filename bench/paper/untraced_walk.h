@@ -1,5 +1,4 @@
-// The frame without tracing: age, draw, read back, warp, splat and composite with a cache as a walk leaves it
-// (Haber 2001, section 5: everything but the correction step), stage by stage, beside the bare draw.
+// Frames without tracing, with a cache as a walk leaves it, beside the bare draw.
 #pragma once
 
 #include <cstddef>
@@ -7,22 +6,10 @@
 
 #include "app/session/camera_path.h"
 #include "bench/harness/method.h"
-#include "render/splat/correction_layer.h"
+#include "bench/harness/untraced_frame.h"
 #include "render/splat/sample_cache.h"
 
 namespace saccade::bench {
-
-/// Wall milliseconds of one frame.
-struct UntracedFrame {
-  double age = 0;
-  double draw = 0;     ///< OpenGL until it has finished
-  double read = 0;     ///< colour, ID and depth into main memory
-  double measure = 0;  ///< boxes and start levels of the objects
-  double warp = 0;     ///< the layer's beginFrame, warping and splatting
-  double composite = 0;
-  double total = 0;
-  double splatted = 0;  ///< samples that the warp handed to the layer
-};
 
 /// A sample cache's contents, to be filled in anew before every frame: frames age, drop and hide samples.
 class FrozenCache {
@@ -66,12 +53,10 @@ class UntracedWalk {
     FrozenCache cache;
     std::vector<core::View> views;
   };
-  UntracedFrame step(const core::View& view, render::SampleCache& cache);
 
   const Stage& stage_;
   std::vector<Place> places_;
-  render::CorrectionLayer layer_;
-  core::ImageRgba8 display_;
+  UntracedPicture picture_;
 };
 
 }  // namespace saccade::bench

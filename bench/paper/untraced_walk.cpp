@@ -1,12 +1,9 @@
-#include "bench/paper/untraced_frame.h"
+#include "bench/paper/untraced_walk.h"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
-#include <utility>
 
 #include "bench/harness/trials.h"
-#include "core/composite.h"
 
 namespace saccade::bench {
 namespace {
@@ -19,17 +16,6 @@ constexpr int kFrames = 8;         ///< a place
 constexpr int kFramesBefore = 35;  ///< more than MAX_AGE
 constexpr std::uint64_t kSamplesPerFrame = 12000;
 constexpr std::size_t kCacheBytes = std::size_t{64} << 20;
-
-class Stopwatch {
- public:
-  double lapMs() {
-    const auto from = std::exchange(last_, std::chrono::steady_clock::now());
-    return std::chrono::duration<double, std::milli>(last_ - from).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -54,7 +40,8 @@ void FrozenCache::thaw(const core::View& view, render::SampleCache& cache) const
   for (const Age& a : ages_) cache.add(a.batch, a.age);
 }
 
-UntracedWalk::UntracedWalk(const Stage& stage, const app::CameraPath& path) : stage_(stage) {
+UntracedWalk::UntracedWalk(const Stage& stage, const app::CameraPath& path)
+    : stage_(stage), picture_(*stage.gl->renderer, {.nMin = kMinSamples}) {
   for (int place = 0; place < kPlaces; ++place) {
     const double seconds = path.lengthSeconds() * (2 * place + 1) / (2 * kPlaces);
     app::FrameLoop loop(*stage.workspace, *stage.gl->renderer, {.threads = 0, .seed = stage.seed});
@@ -81,7 +68,8 @@ UntracedFrame UntracedWalk::medians() {
   for (const Place& place : places_) {
     std::deque<render::SampleCache> caches;
     for (const core::View& view : place.views) place.cache.thaw(view, caches.emplace_back(kCacheBytes));
-    for (std::size_t i = 0; i < caches.size(); ++i) frames.push_back(step(place.views[i], caches[i]));
+    for (std::size_t i = 0; i < caches.size(); ++i)
+      frames.push_back(picture_.draw(place.views[i], caches[i]));
   }
   const auto median = [&](double UntracedFrame::*stage) {
     std::vector<double> values;
@@ -91,26 +79,6 @@ UntracedFrame UntracedWalk::medians() {
   return {median(&UntracedFrame::age),     median(&UntracedFrame::draw),    median(&UntracedFrame::read),
           median(&UntracedFrame::measure), median(&UntracedFrame::warp),    median(&UntracedFrame::composite),
           median(&UntracedFrame::total),   median(&UntracedFrame::splatted)};
-}
-
-UntracedFrame UntracedWalk::step(const core::View& view, render::SampleCache& cache) {
-  UntracedFrame ms;
-  Stopwatch whole, stage;
-  cache.age(view, {.nMin = kMinSamples});
-  ms.age = stage.lapMs();
-  const core::FramePtr frame = stage_.gl->renderer->render(view, cache.cameraAge(), kMinSamples);
-  const render::DrawStats& draw = stage_.gl->renderer->lastDraw();
-  ms.draw = 1000 * draw.drawSeconds;
-  ms.read = 1000 * draw.readSeconds;
-  ms.measure = 1000 * draw.measureSeconds;
-  stage.lapMs();
-  layer_.beginFrame(frame);
-  ms.splatted = static_cast<double>(cache.warp(*frame, layer_).splatted);
-  ms.warp = stage.lapMs();
-  core::compositeDisplay(kSize.width, kSize.height, frame->baseAndId, layer_.pixels(), 0, display_);
-  ms.composite = stage.lapMs();
-  ms.total = whole.lapMs();
-  return ms;
 }
 
 double UntracedWalk::bareDraw() {
