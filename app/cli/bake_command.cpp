@@ -52,11 +52,10 @@ int bake(const BakeOptions& o) {
 }  // namespace
 
 void addBakeCommand(CLI::App& program, Run& run) {
-  CLI::App* command =
-      program.add_subcommand("bake",
-                             "Compute a scene's illumination maps (other commands do it by themselves when "
-                             "needed); where only lights "
-                             "changed since the last time, only what they change is baked again");
+  CLI::App* command = program.add_subcommand(
+      "bake",
+      "Compute a scene's illumination maps (other commands do it by themselves when "
+      "needed); where lights or objects changed since the last time, only what they change is baked again");
   auto o = std::make_shared<BakeOptions>();
   addSceneOptions(*command, o->scene);
   command->add_option("-o,--output", o->output, "Map file to write (default: the user's cache folder)");

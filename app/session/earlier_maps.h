@@ -1,10 +1,9 @@
-// Maps that were baked before the lights of a scene changed: what of them can stay is not baked again.
+// Maps that were baked before a scene changed: what of them can stay is not baked again.
 //
-// A note in the cache folder says, for a scene file and settings, where its newest maps are and which lights
-// they were baked for.
+// A note in the cache folder says, for a scene file and settings, where its newest maps are and what the
+// scene was like then (core/scene_state.h: 24 bytes a vertex, 12 a triangle).
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -17,17 +16,18 @@ namespace saccade::app {
 
 struct EarlierMaps {
   core::IlluminationMaps maps;
-  raytrace::EarlierLight light;
+  raytrace::EarlierScene scene;
 };
 
 /// The newest maps that were baked from this scene file with these settings (which tell maps of one scene
-/// apart), when nothing but lights has changed since; said, when more has. None when lights are the same,
-/// too.
-std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const std::string& settings);
+/// apart), when it has changed since. None where the change is of a kind of which nothing can stay: that of
+/// the environment, which is said. `state` is the scene's.
+std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::SceneState& state,
+                                       const std::string& settings);
 
-/// Notes that `file` holds this scene's newest maps. `drift`: raytrace::EarlierLight. Failures only make a
+/// Notes that `file` holds this scene's newest maps. `drift`: raytrace::EarlierScene. Failures only make a
 /// later bake longer.
-void rememberMaps(const core::Scene& scene, const std::string& settings, const std::filesystem::path& file,
-                  double drift);
+void rememberMaps(const core::Scene& scene, const core::SceneState& state, const std::string& settings,
+                  const std::filesystem::path& file, double drift);
 
 }  // namespace saccade::app

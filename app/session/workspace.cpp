@@ -12,6 +12,7 @@
 #include "app/session/long_bake.h"
 #include "raytrace/bake/baker.h"
 #include "raytrace/bake/kept_charts.h"
+#include "raytrace/bake/kept_layout.h"
 #include "raytrace/bake/light_charts.h"
 
 namespace saccade::app {
@@ -102,15 +103,61 @@ raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, co
   return std::move(charts.atlas);
 }
 
-/// What need not be baked again of the maps of another state of the lights; says so.
-raytrace::LightChange findChange(const Workspace& w, const EarlierMaps& earlier, int threads,
-                                 const std::stop_token& stop) {
-  raytrace::LightChange change =
-      raytrace::findLightChange(w.scene, w.plan, earlier.maps, earlier.light, threads, stop);
+/// As many names as a line holds.
+std::string shortList(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t more = names.size() > kMost ? names.size() - kMost : 0;
+  names.resize(names.size() - more);
+  if (more > 0) names.push_back(std::to_string(more) + " more");
+  return joined(names);
+}
+
+/// Charts, a world and what can be kept of earlier maps.
+struct Prepared {
+  raytrace::ChartAtlas atlas;
+  raytrace::SceneChange change;
+  bool keeps = false;  ///< `change` holds
+};
+
+/// Charts the scene so that what did not change stays where it was in earlier maps; finds what need not be
+/// baked again, and says so.
+Prepared chartLikeEarlier(Workspace& w, const EarlierMaps& earlier, const core::SceneState& state,
+                          const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop) {
+  const core::SceneState& before = earlier.scene.state;
+  const raytrace::SceneMatch match = raytrace::matchScenes(state, before);
+  const raytrace::ChangedScene changed{w.scene, state, before, match};
+  std::vector<std::string> names = raytrace::namesOfChanges(match, state, before);
+  const std::vector<std::string> lights = raytrace::namesOfLights(changed);
+  names.insert(names.end(), lights.begin(), lights.end());
+  Prepared out;
+  std::vector<char> inPlace;
+  if (match.sameObjects()) {
+    out.atlas.charts = earlier.maps.charts;
+    out.atlas.size = earlier.maps.width;
+    core::applyCharts(w.scene, out.atlas.charts);
+    w.world = std::make_unique<raytrace::World>(w.scene, w.plan);
+  } else {
+    out.atlas = chartReported(w, options, bake, stop);
+    std::optional<raytrace::KeptLayout> layout =
+        raytrace::keepLayout(w.scene, out.atlas, match, before.plain, earlier.maps, w.plan.lightmapSize);
+    if (!layout) {
+      spdlog::info("changed ({}): no chart can keep its place, everything is baked again", shortList(names));
+      return out;
+    }
+    out.atlas.charts = std::move(layout->charts);
+    out.atlas.size = layout->size;
+    inPlace = std::move(layout->inPlace);
+    core::placeCharts(w.scene, out.atlas.charts);
+    w.world->refreshCharts();
+  }
+  out.change = raytrace::findSceneChange(changed, w.plan, earlier.maps, out.atlas.size, inPlace,
+                                         earlier.scene.drift, bake.threads, stop);
+  out.keeps = true;
+  const raytrace::SceneChange& change = out.change;
   const long again = std::lround(100 * change.texelShare);
-  spdlog::info("light changed ({}): {} of {} charts ({} % of texels) baked again, {} % kept",
-               joined(change.names), change.charts - change.keptCharts, change.charts, again, 100 - again);
-  return change;
+  spdlog::info("changed ({}): {} of {} charts ({} % of texels) baked again, {} % kept", shortList(names),
+               change.charts - change.keptCharts, change.charts, again, 100 - again);
+  return out;
 }
 
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
@@ -179,22 +226,19 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     if (!bake.always)
       spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
                    file.string());
+    const bool plain = bake.importFolder.empty();
+    const core::SceneState state = core::sceneState(w->scene);
     std::optional<EarlierMaps> earlier;
-    if (bake.importFolder.empty()) earlier = earlierMaps(w->scene, settingsName(options, bake));
-    raytrace::ChartAtlas atlas;
-    raytrace::LightChange change;
-    if (earlier) {
-      atlas.charts = earlier->maps.charts;
-      atlas.size = earlier->maps.width;
-      core::applyCharts(w->scene, atlas.charts);
-      w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
-      change = findChange(*w, *earlier, bake.threads, stop);
-    } else {
-      atlas = chartReported(*w, options, bake, stop);
-    }
-    w->maps = bakeNow(*w, std::move(atlas), options, bake, key, earlier ? &change.kept : nullptr, stop);
+    if (plain) earlier = earlierMaps(w->scene, state, settingsName(options, bake));
+    Prepared prepared;
+    if (earlier)
+      prepared = chartLikeEarlier(*w, *earlier, state, options, bake, stop);
+    else
+      prepared.atlas = chartReported(*w, options, bake, stop);
+    w->maps = bakeNow(*w, std::move(prepared.atlas), options, bake, key,
+                      prepared.keeps ? &prepared.change.kept : nullptr, stop);
     store(file, w->maps, namedByUser);
-    if (bake.importFolder.empty()) rememberMaps(w->scene, settingsName(options, bake), file, change.drift);
+    if (plain) rememberMaps(w->scene, state, settingsName(options, bake), file, prepared.change.drift);
   }
   w->world->setMaps(&w->maps);
   return w;

@@ -331,7 +331,7 @@ void BakeJob::findSource(const core::Progress& progress) {
 }
 
 void BakeJob::takeKept(int layer, std::span<Vec3> irradiance) const {
-  if (!options_.kept) return;
+  if (!options_.kept || layer >= options_.kept->previous->layers) return;
   const auto size = static_cast<std::size_t>(texels_.size());
   for (std::size_t t = 0; t < irradiance.size(); ++t) {
     const std::int32_t chart = texels_.chartOf(t);

@@ -8,8 +8,10 @@
 namespace saccade::raytrace {
 
 struct KeptCharts {
-  const core::IlluminationMaps* previous = nullptr;  ///< of the same charts, size and layers
-  std::vector<char> keep;                            ///< by TexelMap::charts()
+  /// Where charts are kept, theirs are the same texels of the atlas, which may be larger now, and have
+  /// another layer.
+  const core::IlluminationMaps* previous = nullptr;
+  std::vector<char> keep;  ///< by TexelMap::charts()
 };
 
 }  // namespace saccade::raytrace

@@ -1,9 +1,10 @@
-// What a change of lights leaves as it is: charts whose light need not be baked again.
+// What a change of a scene leaves as it is: charts whose light need not be baked again.
 //
-// Light adds up: the maps of the old lights and those of the new ones differ by the maps of the lights that
-// changed, alone. A quick bake of a scene in which only these shine, by as much as they changed, bounds the
-// change of every texel. A chart is kept where that, and what earlier changes left in it, stays below half of
-// the error target (half, since the quick bake has errors too); the others are baked again.
+// The light of each chart is bounded by how much it can have changed: by way of objects that moved, came,
+// went or changed their material, of the lights that stayed (change_bound.h); and by quick bakes of the
+// lights that changed, alone (change_scenes.h). A chart is kept where that, and what earlier changes left in
+// it, stays below half of the error target (half, since quick looks have errors too); the others are baked
+// again.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "core/light_state.h"
 #include "core/maps.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
+#include "core/scene_state.h"
+#include "raytrace/bake/change_scenes.h"
 #include "raytrace/bake/kept.h"
 
 namespace saccade::raytrace {
@@ -22,25 +24,25 @@ namespace saccade::raytrace {
 /// Root mean square error over mean irradiance that a quality stands for. Throws core::UsageError.
 double errorTargetOf(const std::string& quality);
 
-/// The lights that earlier maps were baked for.
-struct EarlierLight {
-  core::LightState state;
-  double drift = 0;  ///< what texels kept from still earlier lights may be off, over mean irradiance
+/// The scene that earlier maps were baked for.
+struct EarlierScene {
+  core::SceneState state;
+  double drift = 0;  ///< what texels kept from still earlier states may be off, over mean irradiance
 };
 
-struct LightChange {
-  std::vector<std::string> names;  ///< of lights, and of objects whose emission changed
+struct SceneChange {
   KeptCharts kept;
   std::size_t charts = 0, keptCharts = 0;  ///< that show irradiance
-  double drift = 0;                        ///< EarlierLight::drift of the maps that are made so
+  double drift = 0;                        ///< EarlierScene::drift of the maps that are made so
   double texelShare = 0;                   ///< of the surface's texels that are baked again, [0, 1]
 };
 
-/// `charted` is the scene as it is now, cut by the charts of `previous`, which were baked for another state
-/// of its lights: before.state.unlitKey must equal that of `charted`. `previous` must outlive the result. The
-/// same for any number of threads. Throws core::Error when stopped.
-LightChange findLightChange(const core::Scene& charted, const core::Plan& plan,
-                            const core::IlluminationMaps& previous, const EarlierLight& before, int threads,
+/// `scene.now` is charted for an atlas of `size` texels; `inPlace`, by TexelMap::charts(), says which charts
+/// have the texels that `previous` holds (empty: all). `previous` must outlive the result. The same for any
+/// number of threads. Throws core::Error when stopped.
+SceneChange findSceneChange(const ChangedScene& scene, const core::Plan& plan,
+                            const core::IlluminationMaps& previous, int size,
+                            const std::vector<char>& inPlace, double drift, int threads,
                             const std::stop_token& stop);
 
 }  // namespace saccade::raytrace

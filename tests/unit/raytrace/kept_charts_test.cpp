@@ -44,7 +44,7 @@ struct State {
   core::Plan plan;
   std::unique_ptr<World> world;
   core::IlluminationMaps maps;
-  EarlierLight light;
+  EarlierScene earlier;
 
   /// Charted anew.
   explicit State(core::Scene s) : scene(std::move(s)) {
@@ -53,12 +53,13 @@ struct State {
     core::applyCharts(scene, atlas.charts);
     world = std::make_unique<World>(scene, plan);
     maps = bakeMaps(*world, std::move(atlas.charts), atlas.size, quick(), {});
-    light.state = core::lightState(scene);
+    earlier.state = core::sceneState(scene);
   }
   /// By the charts of earlier maps, not baked.
-  State(core::Scene s, const core::IlluminationMaps& earlier) : scene(std::move(s)), maps(earlier) {
+  State(core::Scene s, const core::IlluminationMaps& before) : scene(std::move(s)), maps(before) {
     plan.lightmapSize = 128;
-    core::applyCharts(scene, earlier.charts);
+    core::applyCharts(scene, before.charts);
+    earlier.state = core::sceneState(scene);
     world = std::make_unique<World>(scene, plan);
   }
   core::IlluminationMaps bake(const KeptCharts* kept) const {
@@ -67,6 +68,22 @@ struct State {
     return bakeMaps(*world, maps.charts, maps.width, o, {});
   }
 };
+
+struct LightChange : SceneChange {
+  std::vector<std::string> names;
+};
+
+/// Of states that differ in their lights only.
+LightChange findChange(const State& now, const State& before) {
+  const SceneMatch match = matchScenes(now.earlier.state, before.earlier.state);
+  EXPECT_TRUE(match.sameObjects());
+  const ChangedScene scene{now.scene, now.earlier.state, before.earlier.state, match};
+  LightChange change;
+  static_cast<SceneChange&>(change) =
+      findSceneChange(scene, now.plan, before.maps, before.maps.width, {}, before.earlier.drift, 2, {});
+  change.names = namesOfLights(scene);
+  return change;
+}
 
 /// Calls visit(texel's x, y, lies in the first room).
 template <class Visit>
@@ -82,7 +99,7 @@ void forEachTexel(const core::Scene& charted, int size, Visit&& visit) {
 TEST(KeptCharts, ChangeInOneRoomLeavesTheOthersTexelsAndTheResultIsWithinTheTarget) {
   const State before(twoRooms(5, 5, Vec3(1)));
   const State now(twoRooms(5, 5, Vec3(3)), before.maps);
-  const LightChange change = findLightChange(now.scene, now.plan, before.maps, before.light, 2, {});
+  const LightChange change = findChange(now, before);
   EXPECT_EQ(change.names, std::vector<std::string>{"bulb"});
   EXPECT_EQ(change.charts, 12u);
   EXPECT_EQ(change.keptCharts, 6u);
@@ -109,7 +126,7 @@ TEST(KeptCharts, ChangeInOneRoomLeavesTheOthersTexelsAndTheResultIsWithinTheTarg
 TEST(KeptCharts, EmissionThatChangesIsNamedByItsObject) {
   const State before(twoRooms(5, 5, Vec3(0.1f)));
   const State now(twoRooms(5, 0, Vec3(0.1f)), before.maps);
-  const LightChange change = findLightChange(now.scene, now.plan, before.maps, before.light, 2, {});
+  const LightChange change = findChange(now, before);
   EXPECT_EQ(change.names, std::vector<std::string>{now.scene.objects[13].name});
   EXPECT_EQ(change.keptCharts, 6u);
 }
@@ -122,7 +139,7 @@ TEST(KeptCharts, OnlyLightThatChangesBakesEverythingAgain) {
   brighter.materials.back().emission *= 2.0f;
   const State before(std::move(b.scene));
   const State now(std::move(brighter), before.maps);
-  const LightChange change = findLightChange(now.scene, now.plan, before.maps, before.light, 2, {});
+  const LightChange change = findChange(now, before);
   EXPECT_EQ(change.keptCharts, 0u);
   EXPECT_EQ(change.texelShare, 1);
 }
@@ -133,9 +150,9 @@ TEST(KeptCharts, SmallChangesAddUpUntilTheyMatter) {
   int stepsKept = 0;
   for (float lamp = 5.02f; stepsKept < 20; lamp += 0.02f, ++stepsKept) {
     auto next = std::make_unique<State>(twoRooms(lamp, 5, Vec3(0)), state->maps);
-    const LightChange change = findLightChange(next->scene, next->plan, state->maps, state->light, 2, {});
+    const LightChange change = findChange(*next, *state);
     if (change.keptCharts < change.charts) break;
-    next->light = {core::lightState(next->scene), change.drift};
+    next->earlier.drift = change.drift;
     state = std::move(next);
   }
   EXPECT_GT(stepsKept, 0);
