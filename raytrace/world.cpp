@@ -138,7 +138,7 @@ std::size_t World::bytes() const {
   const auto of = [](const auto& array) { return array.capacity() * sizeof(array[0]); };
   return static_cast<std::size_t>(embree_->bytes) + of(materials_) + of(materialOf_) + of(records_) +
          of(shapes_) + of(firstTriangle_) + of(instances_) + of(instanceOf_) + of(twins_) + of(flags_) +
-         of(objectOfId_) + of(mapTexels_);
+         of(objectOfId_) + of(mapTexels_) + of(mapBlocks_);
 }
 
 std::uint32_t World::objectOfId(std::uint32_t id) const {

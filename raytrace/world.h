@@ -70,8 +70,8 @@ struct alignas(64) TriangleShape {
 /// The illumination map's texels around one point, like TexelFootprint.
 struct MapFootprint {
   std::uint32_t at[4] = {};
-  float right = 0, down = 0;
-  bool dark = true;  ///< no map on this side: irradiance is 0
+  float right = 0, down = 0;  ///< texels from the middle of at[0]; negative before that of the atlas's first
+  bool dark = true;           ///< no map on this side: irradiance is 0
 };
 
 /// An object that lies exactly on another.
@@ -101,7 +101,8 @@ class World {
   /// 0. Not while another thread traces.
   void setMaps(const core::IlluminationMaps* maps);
   bool hasMaps() const { return !mapTexels_.empty(); }
-  /// Bilinear; layer 0 front, 1 back (the back of a single-layer map is 0). W/m^2.
+  /// Bilinear, finer where the maps have detail (core/map_detail.h); layer 0 front, 1 back (the back of a
+  /// single-layer map is 0). W/m^2.
   Vec3 irradiance(const Vec2& lightmapUv, int layer) const {
     return irradiance(mapFootprint(lightmapUv, layer));
   }
@@ -172,6 +173,10 @@ class World {
   static constexpr unsigned kMapTileX = 4, kMapTileY = 2;
   static std::uint32_t mapColumn(unsigned x);
   std::uint32_t mapRow(unsigned y, int layer) const;
+  void copyMapRows(const std::uint16_t* from, int rows, unsigned firstRow, int layer);
+  void copyMapBlocks(const core::IlluminationMaps& maps);
+  MapFootprint blockFootprint(const MapFootprint& f, std::uint32_t texel) const;
+  Vec3 mixMap(const MapFootprint& f) const;
   void buildRecords();
   void addRecords(std::uint32_t firstObject);
   void placeObjects();
@@ -193,8 +198,12 @@ class World {
   float largestRay_ = kLargestRay;
   std::vector<std::uint8_t> flags_;  ///< by object
   std::vector<std::uint32_t> objectOfId_;
-  HugeVector<std::uint64_t> mapTexels_;  ///< RGB and 0 as halves, 4 x 2 to a cache line
-  int mapTilesAcross_ = 0, mapTilesDown_ = 0;
+  /// RGB as halves and 16 bits that say whether the texel has a block; 4 x 2 to a cache line. Each layer: the
+  /// atlas, then the rows of its detail.
+  HugeVector<std::uint64_t> mapTexels_;
+  HugeVector<std::uint32_t> mapBlocks_;  ///< by place in layer 0 of mapTexels_; empty without detail
+  unsigned mapTilesAcross_ = 0, mapTilesDown_ = 0;  ///< of one layer
+  unsigned mapDetailRow_ = 0;                       ///< the first row of a layer's detail
   int mapWidth_ = 0, mapHeight_ = 0, mapLayers_ = 0;
   std::unique_ptr<Lights> lights_;
   std::unique_ptr<Embree> embree_;

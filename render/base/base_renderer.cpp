@@ -41,6 +41,7 @@ Program makeProgram(const Gl& gl, Features features) {
   gl.UseProgram(name);
   // A uniform that the features leave out has location -1, which GL ignores.
   gl.Uniform1i(gl.GetUniformLocation(name, "maps"), kMapsUnit);
+  gl.Uniform1i(gl.GetUniformLocation(name, "mapBlocks"), kMapBlocksUnit);
   for (std::size_t i = 0; i < kTextureUses.size(); ++i) {
     gl.Uniform1i(gl.GetUniformLocation(name, kTextureUses[i].sampler), kTextureUses[i].unit);
     p.uvMatrix[i] = gl.GetUniformLocation(name, kTextureUses[i].uvMatrix);
@@ -83,8 +84,7 @@ struct BaseRenderer::State {
   Geometry geometry;
   std::vector<SurfaceConstants> constants;  ///< by object
   std::vector<GlTexture> textures;          ///< by the scene's index; empty ones are not drawn
-  GlTexture maps;
-  int mapLayers = 0;
+  MapTextures maps;
   std::map<Features, Program> programs;
   std::optional<Background> background;  ///< where the scene has an environment
   Target target;
@@ -130,8 +130,9 @@ void BaseRenderer::State::uploadTextures() {
 
 /// What is drawn with the maps at hand.
 Features BaseRenderer::State::shown(Features features) const {
-  if (mapLayers == 0) return withoutMaps(features);
-  return mapLayers == 1 ? withoutBackLayer(features) : features;
+  if (maps.layers == 0) return withoutMaps(features);
+  if (maps.layers == 1) features = withoutBackLayer(features);
+  return maps.blocks.name() == 0 ? features : withMapDetail(features);
 }
 
 const Program& BaseRenderer::State::program(Features features) {
@@ -163,7 +164,9 @@ void BaseRenderer::State::beginDraw(const core::View& view) {
   gl.ClearBufferfv(GL_COLOR, 0, kNothing);
   gl.ClearBufferfv(GL_DEPTH, 0, &kFar);
   gl.ActiveTexture(GL_TEXTURE0 + kMapsUnit);
-  gl.BindTexture(GL_TEXTURE_2D_ARRAY, maps.name());
+  gl.BindTexture(GL_TEXTURE_2D_ARRAY, maps.texels.name());
+  gl.ActiveTexture(GL_TEXTURE0 + kMapBlocksUnit);
+  gl.BindTexture(GL_TEXTURE_2D, maps.blocks.name());
   boundProgram = nullptr;
   boundAttributes = 0;
   culling = false;
@@ -272,11 +275,9 @@ BaseRenderer::~BaseRenderer() { state_->context.makeCurrent(); }
 
 void BaseRenderer::setMaps(const core::IlluminationMaps* maps) {
   state_->context.makeCurrent();
-  state_->maps = GlTexture();
-  state_->mapLayers = 0;
+  state_->maps = MapTextures();
   if (!maps) return;
   state_->maps = uploadMaps(state_->gl, *maps, state_->context.maxSize());
-  state_->mapLayers = maps->layers;
   checkGl(state_->gl, "uploading the illumination maps");
 }
 

@@ -33,13 +33,11 @@ struct NamedFeature {
   Feature feature;
   const char* macro;
 };
-constexpr std::array kMacros{NamedFeature{kLightmap, "LIGHTMAP"},
-                             NamedFeature{kBackLayer, "BACK_LAYER"},
-                             NamedFeature{kVertexColor, "VERTEX_COLOR"},
-                             NamedFeature{kEmission, "EMISSION"},
-                             NamedFeature{kFrontEmission, "FRONT_EMISSION"},
-                             NamedFeature{kAlphaMask, "ALPHA_MASK"},
-                             NamedFeature{kBlend, "BLEND"}};
+constexpr std::array kMacros{
+    NamedFeature{kLightmap, "LIGHTMAP"},    NamedFeature{kBackLayer, "BACK_LAYER"},
+    NamedFeature{kMapDetail, "MAP_DETAIL"}, NamedFeature{kVertexColor, "VERTEX_COLOR"},
+    NamedFeature{kEmission, "EMISSION"},    NamedFeature{kFrontEmission, "FRONT_EMISSION"},
+    NamedFeature{kAlphaMask, "ALPHA_MASK"}, NamedFeature{kBlend, "BLEND"}};
 
 std::string header(Features features) {
   std::string text = "#version 330 core\n";
@@ -108,6 +106,22 @@ uniform vec4 surface[3];  // SurfaceConstants
 in vec2 lightmapUv;
 uniform sampler2DArray maps;
 #endif
+#ifdef MAP_DETAIL
+uniform usampler2D mapBlocks;
+// core/map_detail.h, in coordinates of the texture that holds atlas and detail (MapTextures).
+vec2 mapPlace() {
+  vec2 atlas = vec2(textureSize(mapBlocks, 0));
+  vec2 place = clamp(lightmapUv, 0.0, 1.0) * atlas;
+  vec2 texel = min(floor(place), atlas - 1.0);
+  uint block = texelFetch(mapBlocks, ivec2(texel), 0).r;
+  if (block != 0u) {
+    vec2 corner = vec2(block & 0x1FFFu, block >> 13 & 0x1FFFu);
+    vec2 cells = vec2(1u << (block >> 26 & 7u), 1u << (block >> 29));
+    place = vec2(0.0, atlas.y + 1.0) + corner + (place - texel) * cells;
+  }
+  return place / vec2(textureSize(maps, 0).xy);
+}
+#endif
 #ifdef UV0
 in vec2 uv0;
 #endif
@@ -144,7 +158,11 @@ void main() {
 #else
   const float layer = 0.0;
 #endif
+#ifdef MAP_DETAIL
+  radiance *= textureLod(maps, vec3(mapPlace(), layer), 0.0).rgb;
+#else
   radiance *= texture(maps, vec3(lightmapUv, layer)).rgb;
+#endif
 #endif
 #ifdef EMISSION
   vec3 emission = surface[1].rgb;

@@ -31,7 +31,8 @@ enum Feature : std::uint32_t {
   kBaseTransform = 1u << 15,
   kMetallicTransform = 1u << 16,
   kTransmissionTransform = 1u << 17,
-  kEmissionTransform = 1u << 18
+  kEmissionTransform = 1u << 18,
+  kMapDetail = 1u << 19  ///< texels of the maps may have blocks of finer ones
 };
 using Features = std::uint32_t;
 
@@ -39,7 +40,15 @@ using Features = std::uint32_t;
 enum VertexAttribute : std::uint32_t { kPosition = 0, kLightmapUv = 1, kUv0 = 2, kUv1 = 3, kColor = 4 };
 
 /// Texture units.
-enum TextureUnit : int { kMapsUnit, kBaseUnit, kMetallicUnit, kTransmissionUnit, kEmissionUnit, kUnitCount };
+enum TextureUnit : int {
+  kMapsUnit,
+  kMapBlocksUnit,
+  kBaseUnit,
+  kMetallicUnit,
+  kTransmissionUnit,
+  kEmissionUnit,
+  kUnitCount
+};
 
 /// How the base layer reads one of a material's textures.
 struct TextureUse {
@@ -82,6 +91,8 @@ SurfaceConstants constantsOf(const core::Scene& scene, const core::Object& objec
 inline Features withoutMaps(Features f) { return f & ~(kLightmap | kBackLayer); }
 /// The same with maps of one layer.
 inline Features withoutBackLayer(Features f) { return f & ~kBackLayer; }
+/// The same with maps that have detail.
+inline Features withMapDetail(Features f) { return f & kLightmap ? f | kMapDetail : f; }
 
 /// The attributes (bits 1 << VertexAttribute) that a program with these features reads.
 std::uint32_t attributesOf(Features features);

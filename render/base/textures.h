@@ -10,7 +10,14 @@ namespace saccade::render {
 /// SRGB8_ALPHA8 or RGBA8 with mipmaps. Throws core::Error when the texture exceeds `maxSide`.
 GlTexture uploadTexture(const Gl& gl, const core::Texture& texture, int maxSide);
 
-/// RGB16F array, linear filter, one layer per side. Throws core::Error for maps whose counts disagree.
-GlTexture uploadMaps(const Gl& gl, const core::IlluminationMaps& maps, int maxSide);
+/// Illumination maps: one texture for the atlas and its detail, so that a look-up reads one.
+struct MapTextures {
+  int layers = 0;    ///< 0: no maps
+  GlTexture texels;  ///< RGB16F array, linear filter, one layer per side: atlas, its last row again, detail
+  GlTexture blocks;  ///< R32UI, MapBlock::packed by texel of the atlas; none without detail
+};
+
+/// Throws core::Error for maps whose counts disagree and when the texels exceed `maxSide`.
+MapTextures uploadMaps(const Gl& gl, const core::IlluminationMaps& maps, int maxSide);
 
 }  // namespace saccade::render

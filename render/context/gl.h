@@ -64,6 +64,7 @@ namespace saccade::render {
   X(SHADERSOURCE, ShaderSource)                       \
   X(TEXIMAGE2D, TexImage2D)                           \
   X(TEXIMAGE3D, TexImage3D)                           \
+  X(TEXSUBIMAGE3D, TexSubImage3D)                     \
   X(TEXPARAMETERI, TexParameteri)                     \
   X(TEXSUBIMAGE2D, TexSubImage2D)                     \
   X(UNIFORM1I, Uniform1i)                             \

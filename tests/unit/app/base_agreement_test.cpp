@@ -5,6 +5,7 @@
 #include "raytrace/surface.h"
 #include "raytrace/world.h"
 #include "render/base/base_renderer.h"
+#include "tests/detail_maps.h"
 #include "tests/unit/app/fixtures.h"
 #include "tests/unit/render/scene_fixture.h"
 
@@ -94,21 +95,19 @@ core::Scene sceneOf(const Case& c) {
   return scene;
 }
 
-/// Pixels compared.
-int expectAgreement(const Case& c) {
-  const core::Scene scene = sceneOf(c);
-  const core::IlluminationMaps maps = tests::constantMaps({Vec3(2, 3, 4), Vec3(5, 1, 0.5f)});
+/// Pixels compared, of an image of `side` x `side`.
+int expectAgreement(const core::Scene& scene, const core::IlluminationMaps& maps, int side) {
   static const auto context = render::makeHeadlessContext(render::ContextKind::osmesa);
   render::BaseRenderer renderer(*context, scene);
   renderer.setMaps(&maps);
-  const core::View view({}, kSide, kSide, scene.bounds);
+  const core::View view({}, side, side, scene.bounds);
   const auto frame = renderer.render(view, 1, 10);
   raytrace::World world(scene, core::makePlan(scene));
   world.setMaps(&maps);
   raytrace::RayCounters counters;
   int compared = 0;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
       const Vec3 direction =
           glm::normalize(view.direction({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
       raytrace::Hit hit;
@@ -126,6 +125,11 @@ int expectAgreement(const Case& c) {
     }
   }
   return compared;
+}
+
+/// Pixels compared.
+int expectAgreement(const Case& c) {
+  return expectAgreement(sceneOf(c), tests::constantMaps({Vec3(2, 3, 4), Vec3(5, 1, 0.5f)}), kSide);
 }
 
 std::string describe(const Case& c) {
@@ -162,6 +166,20 @@ TEST(BaseAgreement, BothSidesUnderEveryLayer) {
       c.layered = !ward;
       SCOPED_TRACE(describe(c));
       EXPECT_GT(expectAgreement(c), kSide * kSide / 8);
+    }
+  }
+}
+
+TEST(BaseAgreement, DetailOfTheMapsInBlocksOfEverySide) {
+  core::Material material = tests::lambert(Vec3(0.8f));
+  material.doubleSided = true;
+  // 8 bits of filter weights over steps of up to 1 between values of 1 and more are within kRelative.
+  for (const auto& [width, height, mostLog2] : {std::tuple{11, 7, 3}, {157, 3, 7}}) {
+    const core::IlluminationMaps maps = tests::detailMaps(width, height, 2, mostLog2, 12);
+    for (const bool behind : {false, true}) {
+      SCOPED_TRACE(std::to_string(width) + (behind ? ", from behind" : ""));
+      const core::Scene scene = behind ? tests::oneQuadFromBehind(material) : tests::oneQuad(material);
+      EXPECT_GT(expectAgreement(scene, maps, 4 * kSide), kSide * kSide);
     }
   }
 }

@@ -1,5 +1,6 @@
 // What the base layer shows, against its formula.
 #include "core/error.h"
+#include "tests/detail_maps.h"
 #include "tests/unit/render/base_layer_fixture.h"
 
 namespace saccade::tests {
@@ -145,6 +146,24 @@ TEST_P(BaseShading, MapsWhoseCountsDisagreeAreRefused) {
   render::BaseRenderer renderer(*context_, scene);
   core::IlluminationMaps maps = constantMaps({Vec3(1)});
   maps.texels.pop_back();
+  EXPECT_THROW(renderer.setMaps(&maps), core::Error);
+  maps = detailMaps(11, 7, 1, 3, 1);
+  renderer.setMaps(&maps);
+  maps.detail.blocks.back() = core::MapBlock{10, 1, 3, 3}.packed();
+  EXPECT_THROW(renderer.setMaps(&maps), core::Error);
+}
+
+TEST_P(BaseShading, MapsWithDetailBeyondTheContextsTexturesAreRefused) {
+  const Scene scene = oneQuad(lambert(Vec3(1)));
+  render::BaseRenderer renderer(*context_, scene);
+  core::IlluminationMaps maps = detailMaps(11, 7, 1, 3, 1);
+  const auto withRows = [&](int rows) {
+    maps.detail.height = rows;
+    maps.detail.texels.assign(std::size_t{3} * 11 * rows, 0);
+  };
+  withRows(context_->maxSize() - 8);  // atlas and guard row
+  EXPECT_NO_THROW(renderer.setMaps(&maps));
+  withRows(context_->maxSize() - 7);
   EXPECT_THROW(renderer.setMaps(&maps), core::Error);
 }
 
