@@ -41,10 +41,12 @@ int bake(const BakeOptions& o) {
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
   if (!o.exportFile.empty()) exportLit(*workspace, o.exportFile, tracerThreads(o.run), interruptToken());
-  std::printf("%s%s: %dx%d texels, %d layer%s, %llu particles, quality %s, %.1f s\n", file.c_str(),
-              workspace->mapsWereThere ? " (already there, not baked again)" : "", workspace->maps.width,
-              workspace->maps.height, workspace->maps.layers, workspace->maps.layers == 1 ? "" : "s",
-              static_cast<unsigned long long>(workspace->maps.photons), workspace->maps.quality.c_str(),
+  const core::IlluminationMaps& maps = workspace->maps;
+  std::printf("%s%s: %dx%d texels, %d layer%s, %.1f MiB%s, %llu particles, quality %s, %.1f s\n",
+              file.c_str(), workspace->mapsWereThere ? " (already there, not baked again)" : "", maps.width,
+              maps.height, maps.layers, maps.layers == 1 ? "" : "s",
+              static_cast<double>(maps.lightBytes()) / (1 << 20), maps.detail.empty() ? "" : " with detail",
+              static_cast<unsigned long long>(maps.photons), maps.quality.c_str(),
               millisecondsSince(start) / 1000);
   return 0;
 }

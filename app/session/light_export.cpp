@@ -21,13 +21,6 @@ fs::path beside(const fs::path& glb, const char* ending) {
   return glb.parent_path() / (glb.stem().string() + ending);
 }
 
-core::ImageRgb layerOf(const core::IlluminationMaps& maps, int layer) {
-  core::ImageRgb out(maps.width, maps.height);
-  for (int y = 0; y < maps.height; ++y)
-    for (int x = 0; x < maps.width; ++x) out.at(x, y) = maps.texel(x, y, layer);
-  return out;
-}
-
 }  // namespace
 
 LitFiles::LitFiles(const fs::path& file)
@@ -52,8 +45,9 @@ void exportLit(const Workspace& workspace, const fs::path& file, int threads, co
   ProgressBar bar("exporting");
   const core::LightTextures light = raytrace::makeLightTextures(
       *workspace.world, workspace.maps, threads, {[&](double fraction) { bar.show(fraction); }, stop});
-  core::writeExr(files.front, layerOf(workspace.maps, 0));
-  if (workspace.maps.layers > 1) core::writeExr(files.back, layerOf(workspace.maps, 1));
+  for (int layer = 0; layer < workspace.maps.layers; ++layer)
+    core::writeExr(layer == 0 ? files.front : files.back,
+                   raytrace::irradiancePicture(*workspace.world, workspace.maps, layer, threads, {{}, stop}));
   try {
     core::writeFileAtomically(files.glb, core::exportGltf(workspace.scene, light));
   } catch (const core::Error& e) {

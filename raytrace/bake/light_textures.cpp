@@ -28,6 +28,18 @@ bool isDetailed(const core::Scene& scene, std::size_t object) {
   return isDetailed(scene.materials[static_cast<std::size_t>(o.material)]) || !scene.meshOf(o).colors.empty();
 }
 
+/// Of the picture that shows the detail of the maps.
+int lightSide(const core::IlluminationMaps& maps) {
+  int finest = 0;
+  for (const std::uint32_t packed : maps.detail.blocks) {
+    const auto block = core::MapBlock::unpack(packed);
+    finest = std::max({finest, block.log2Columns, block.log2Rows});
+  }
+  int side = maps.width;
+  for (; finest > 0 && side * 2 <= kDetailedSide; --finest) side *= 2;
+  return side;
+}
+
 int emissionSide(const core::Scene& scene, int atlasSide) {
   bool detailed = false;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -72,6 +84,16 @@ Vec3 radianceOf(const World& world, const TexelMap& texels, std::size_t texel, i
   return sum / static_cast<float>(kPoints);
 }
 
+/// Mean of the maps over a texel of an atlas of `side`.
+Vec3 meanLookUp(const World& world, int x, int y, int side, int layer) {
+  Vec3 sum(0);
+  for (int i = 0; i < kPoints; ++i) {
+    const Vec2 point = Vec2(x, y) + Vec2(i % 2 ? 0.25f : 0.75f, i < 2 ? 0.25f : 0.75f);
+    sum += world.irradiance(point / static_cast<float>(side), layer);
+  }
+  return sum / static_cast<float>(kPoints);
+}
+
 /// Codes of the values relative to the brightest of each material, which goes to `brightest`.
 core::ImageRgba8 encode(const core::Scene& scene, const TexelMap& texels, std::vector<Vec3> values,
                         std::vector<float>& brightest) {
@@ -93,27 +115,41 @@ core::ImageRgba8 encode(const core::Scene& scene, const TexelMap& texels, std::v
 
 }  // namespace
 
+core::ImageRgb irradiancePicture(const World& world, const core::IlluminationMaps& maps, int layer,
+                                 int threads, const core::Progress& progress) {
+  const int side = lightSide(maps);
+  core::ImageRgb out(side, side);
+  parallelRows(side, threads, progress, [&](int y, int) {
+    for (int x = 0; x < side; ++x)
+      out.at(x, y) = side == maps.width ? maps.texel(x, y, layer) : meanLookUp(world, x, y, side, layer);
+  });
+  return out;
+}
+
 core::LightTextures makeLightTextures(const World& world, const core::IlluminationMaps& maps, int threads,
                                       const core::Progress& progress) {
   const core::Scene& scene = world.scene();
-  const TexelMap coarse(scene, maps.width);
-  const std::vector<char> sides = brighterSides(coarse, maps);
+  const std::vector<char> sides = brighterSides(TexelMap(scene, maps.width), maps);
   const auto layerOf = [&](const TexelMap& texels, std::size_t i) {
     return static_cast<int>(sides[static_cast<std::size_t>(texels.chartOf(i))]);
   };
-  std::vector<Vec3> irradiance(coarse.texelCount());
-  for (std::size_t i = 0; i < irradiance.size(); ++i)
-    if (coarse.chartOf(i) >= 0)
-      irradiance[i] =
-          maps.texel(static_cast<int>(i) % maps.width, static_cast<int>(i) / maps.width, layerOf(coarse, i)) /
-          core::kPi;
   core::LightTextures out;
-  std::vector<float> brightest;
-  out.lightmap = encode(scene, coarse, std::move(irradiance), brightest);
   out.materials.resize(scene.materials.size());
+  std::vector<float> brightest;
+  {
+    const TexelMap texels(scene, lightSide(maps));
+    std::vector<core::ImageRgb> layers;
+    for (int layer = 0; layer < maps.layers; ++layer)
+      layers.push_back(irradiancePicture(world, maps, layer, threads, {{}, progress.stop}));
+    std::vector<Vec3> light(texels.texelCount());
+    for (std::size_t i = 0; i < light.size(); ++i)
+      if (texels.chartOf(i) >= 0)
+        light[i] = layers[static_cast<std::size_t>(layerOf(texels, i))].pixels()[i] / core::kPi;
+    out.lightmap = encode(scene, texels, std::move(light), brightest);
+  }
   for (std::size_t m = 0; m < brightest.size(); ++m) out.materials[m].irradiance = brightest[m];
 
-  const int side = emissionSide(scene, maps.width);
+  const int side = emissionSide(scene, lightSide(maps));
   const TexelMap fine(scene, side);
   std::vector<Vec3> radiance(fine.texelCount());
   parallelRows(side, threads, progress, [&](int y, int) {

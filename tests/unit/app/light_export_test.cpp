@@ -116,6 +116,50 @@ TEST(LightExport, TexturesHoldIrradianceAndWhatTheBaseLayerShows) {
   EXPECT_GT(exact, seen - seen / 100);
 }
 
+TEST(LightExport, DetailOfTheMapsMakesThePicturesFiner) {
+  const auto opens = opened(tests::bundled("cornell.glb"));
+  app::Workspace& w = *opens;
+  std::fill(w.maps.texels.begin(), w.maps.texels.end(), core::toHalf(0.5f));
+  // One block for all: 4 columns of 1, 1, 3 and 3 with their border, and 2 rows alike.
+  w.maps.detail.height = 4;
+  w.maps.detail.blocks.assign(static_cast<std::size_t>(w.maps.width) * w.maps.height,
+                              core::MapBlock{1, 1, 2, 1}.packed());
+  for (int row = 0; row < 4 * w.maps.layers; ++row)
+    for (int x = 0; x < w.maps.width; ++x)
+      w.maps.detail.texels.insert(w.maps.detail.texels.end(), 3, core::toHalf(x < 3 ? 1.0f : 3.0f));
+  w.world->setMaps(&w.maps);
+  const core::ImageRgb picture = raytrace::irradiancePicture(*w.world, w.maps, 0, 2, {});
+  ASSERT_EQ(picture.width(), 4 * w.maps.width);
+  const core::LightTextures light = raytrace::makeLightTextures(*w.world, w.maps, 2, {});
+  ASSERT_EQ(light.lightmap.width(), picture.width());
+  ASSERT_EQ(light.emission.width(), picture.width());
+  // Means of bilinear look-ups at a quarter and three quarters of each cell.
+  constexpr float kExpected[] = {1, 1.25f, 2.75f, 3};
+  const raytrace::TexelMap texels(w.scene, picture.width());
+  const auto chartAt = [&](int x, int y) {
+    const auto side = static_cast<std::size_t>(picture.width());
+    return texels.chartOf(static_cast<std::size_t>(y) * side + static_cast<std::size_t>(x));
+  };
+  const auto insideChart = [&](int x, int y) {
+    const std::int32_t chart = chartAt(x, y);
+    return chart >= 0 && x > 0 && y > 0 && x + 1 < picture.width() && y + 1 < picture.height() &&
+           chartAt(x - 1, y) == chart && chartAt(x + 1, y) == chart && chartAt(x, y - 1) == chart &&
+           chartAt(x, y + 1) == chart;
+  };
+  const core::Srgb8& code = core::Srgb8::table();
+  int compared = 0;
+  for (int y = 0; y < picture.height(); y += 5) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const float expected = kExpected[x % 4];
+      ASSERT_NEAR(picture.at(x, y).y, expected, 2e-3) << x << ' ' << y;
+      if (!insideChart(x, y)) continue;  // fillGutters moves what a border cuts
+      ASSERT_NEAR(light.lightmap.at(x, y).g, code(expected / 3), 1) << x << ' ' << y;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 10000);
+}
+
 TEST(LightExport, TheCommandExportsWithoutBakingTwice) {
   const fs::path scene = tests::temporaryFolder() / "room.glb",
                  lit = tests::temporaryFolder() / "lit room.glb";
