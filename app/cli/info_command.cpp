@@ -64,7 +64,7 @@ void print(const core::Scene& scene, const core::Plan& plan) {
               scene.objects.size(), scene.idCount(), scene.triangleCount(), scene.storedTriangleCount(),
               scene.materials.size(), scene.textures.size());
   std::printf(
-      "  %zu lights%s\n", lightCount(scene),
+      "  %zu %s%s\n", lightCount(scene), lightCount(scene) == 1 ? "light" : "lights",
       scene.defaultLight ? ", a default panel among them: the file has none that one would see by" : "");
   const core::Bounds& b = scene.bounds;
   std::printf("  bounds (%.2f, %.2f, %.2f) to (%.2f, %.2f, %.2f) m\n", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y,

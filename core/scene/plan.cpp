@@ -33,6 +33,11 @@ std::string counted(std::size_t n, const char* thing) {
   return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
+/// "1 solid tints light", "2 solids tint light".
+std::string counted(std::size_t n, const char* thing, const char* oneDoes, const char* severalDo) {
+  return counted(n, thing) + " " + (n == 1 ? oneDoes : severalDo);
+}
+
 /// What the objects of a scene amount to.
 struct Census {
   std::size_t nonDiffuse = 0, rough = 0, transmitting = 0, alpha = 0, normalMapped = 0, doubleSided = 0,
@@ -104,14 +109,16 @@ void describe(const Scene& scene, const Census& c, int mapsMegabytes, Plan& plan
   };
   const std::string nobody = "every object is treated as diffuse";
   line("corrections", plan.corrections,
-       counted(c.nonDiffuse, "object") + " reflect or transmit beyond Lambert", nobody);
+       counted(c.nonDiffuse, "object", "reflects or transmits", "reflect or transmit") + " beyond Lambert",
+       nobody);
   line("glossy reflection", plan.glossy, counted(c.rough, "non-diffuse object") + " with a rough lobe",
        "no rough lobe on a non-diffuse object");
-  line("refraction", plan.refraction, counted(c.transmitting, "object") + " transmit light",
+  line("refraction", plan.refraction, counted(c.transmitting, "object", "transmits", "transmit") + " light",
        "nothing transmits light");
-  line("attenuation", plan.attenuation, counted(c.attenuating, "solid") + " tint the light that crosses",
-       "no solid tints light");
-  line("dispersion", plan.dispersion, counted(c.dispersing, "solid") + " split light into colours",
+  line("attenuation", plan.attenuation,
+       counted(c.attenuating, "solid", "tints", "tint") + " the light that crosses", "no solid tints light");
+  line("dispersion", plan.dispersion,
+       counted(c.dispersing, "solid", "splits", "split") + " light into colours",
        "no solid splits light into colours");
   line("iridescence", c.iridescent > 0, counted(c.iridescent, "object") + " under a thin film",
        "no material has a thin film");
@@ -125,15 +132,14 @@ void describe(const Scene& scene, const Census& c, int mapsMegabytes, Plan& plan
   line("normal maps", plan.normalMaps, counted(c.normalMapped, "object") + " with a normal map",
        "no material has a normal map");
   line("back-side maps", plan.doubleSided,
-       counted(c.doubleSided, "double-sided object") + " take light from behind",
+       counted(c.doubleSided, "double-sided object", "takes", "take") + " light from behind",
        "no double-sided surface takes light");
   line("recursion", plan.recursionDepth > 0,
        "depth " + std::to_string(plan.recursionDepth) +
            (plan.refraction ? ": solids refract on entry and exit" : ": mirrors seen in mirrors"),
        "depth 0: no specular chain to follow");
   line("object ids", plan.corrections,
-       counted(c.nonDiffuse, "id") +
-           (c.nonDiffuse > 255 ? ", paged through an 8-bit stencil" : ", fit the 8-bit stencil"),
+       counted(c.nonDiffuse, "id") + ", a float beside each pixel's colour holds them exactly",
        "no object needs an id");
   const std::string size = std::to_string(plan.lightmapSize);
   line("illumination maps", plan.lightmapSize > 0,

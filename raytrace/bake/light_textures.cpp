@@ -61,8 +61,8 @@ std::vector<char> brighterSides(const TexelMap& texels, const core::Illumination
     const Vec3 more = maps.texel(x, y, 1) - maps.texel(x, y, 0);
     gain[static_cast<std::size_t>(chart)] += texels.area(i) * core::luminance(more);
   }
-  std::vector<char> out;
-  for (const double g : gain) out.push_back(g > 0);
+  std::vector<char> out(gain.size());
+  std::transform(gain.begin(), gain.end(), out.begin(), [](double g) { return g > 0; });
   return out;
 }
 
