@@ -4,8 +4,10 @@
 // The file: magic, version, byte order mark, scene key, settings, number of stages; per stage its name,
 // units, units done, seconds and results; a checksum of all that. Results are runs of zeros (counted) and of
 // other words (as they are): texels without surface and those not yet reached cost nothing. For each texel
-// with surface and layer that leaves up to 48 bytes: about 35 MB for an atlas of 1024 x 1024, 16 times that
-// at 4096 x 4096.
+// with surface and layer that leaves up to 100 bytes: open area 4, direct light 16, gathered light 16 (not at
+// preview), indirect particles 32, caustic ones 32 more (where anything but Lambert reflects). An atlas of
+// 1024 x 1024 so takes at most 105 MB a layer, 16 times that at 4096 x 4096; half of it where few particles
+// make caustics.
 #pragma once
 
 #include <cstdint>

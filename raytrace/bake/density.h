@@ -7,6 +7,12 @@
 // estimate agrees, within its own statistical error, with those of all smaller ones (the intersection of
 // confidence intervals, Goldenshluger and Nemirovski 1997): where light is even the window is wide and noise
 // small; at a shadow's or caustic's edge, or at the foot of a wall with a dark room behind, it stops.
+//
+// Light through walls (light_leak_test.cpp), as a share of what is before the wall: the texel that a wall
+// thinner than itself crosses holds the light of both sides, and bilinear look-ups show that up to 1.5 texels
+// behind the wall. Further on direct light stays below 1 %, and is nothing from 3 texels on or behind a wall
+// that covers a texel. Windows that reach across, and gather rays that meet the crossed texel, leave less
+// than 2 % of all light up to 3 texels behind a thin wall and half a percent beyond; 1 % behind a thick one.
 #pragma once
 
 #include <span>
