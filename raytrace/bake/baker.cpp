@@ -360,6 +360,7 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
   takeKept(layer, irradiance);
   fillGutters(texels_, irradiance);
   stitchSeams(findSeams(texels_), texels_.size(), layer == 1, irradiance);
+  takeKept(layer, irradiance);  // border texels that were moved to their centres once are not moved again
   return irradiance;
 }
 
