@@ -201,6 +201,7 @@ bool ChartLayout::pack(std::span<const double> texelMetres, int size) {
 
 /// Places the rectangles in width x height texels; false when they do not fit.
 bool ChartLayout::packRects(const std::vector<Place*>& places, int width, int height) {
+  if (places.empty()) return true;  // the packer sorts without looking whether there is anything
   std::vector<stbrp_rect> rects(places.size());
   double needed = 0;
   for (std::size_t i = 0; i < places.size(); ++i) {

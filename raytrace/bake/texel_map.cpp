@@ -155,8 +155,8 @@ TexelCover TexelMap::coverOf(std::size_t texel) const {
       twice += area;
     }
   }
-  const Plane2 centre(static_cast<double>(texel % static_cast<std::size_t>(size_)) + 0.5,
-                      static_cast<double>(texel / static_cast<std::size_t>(size_)) + 0.5);
+  const int x = static_cast<int>(texel) % size_, y = static_cast<int>(texel) / size_;
+  const Plane2 centre(x + 0.5, y + 0.5);
   return {twice > 0 ? moment / twice : centre, 0.5 * twice};
 }
 
