@@ -11,6 +11,8 @@
 namespace saccade::bench {
 namespace {
 
+std::string scriptPath(const char* name) { return std::string(SACCADE_SOURCE_DIR "/bench/peers/") + name; }
+
 /// The first line of JSON that has `key`, among what Blender prints. Throws core::Error where there is none.
 nlohmann::json lineWith(const std::string& key, const std::string& output, const std::string& script) {
   std::istringstream lines(output);
@@ -43,9 +45,9 @@ CyclesPicture renderWithCycles(const std::string& scene, int spp, int threads, i
                                const std::filesystem::path& folder, const std::stop_token& stop) {
   return parseCyclesOutput(
       outputOf("Cycles",
-               {"blender", "-b", "--factory-startup", "-P", SACCADE_SOURCE_DIR "/bench/peers/cycles.py", "--",
-                scene, "--spp", std::to_string(spp), "--threads", std::to_string(threads), "--seed",
-                std::to_string(seed), "-o", std::filesystem::absolute(folder).string()},
+               {"blender", "-b", "--factory-startup", "-P", scriptPath("cycles.py"), "--", scene, "--spp",
+                std::to_string(spp), "--threads", std::to_string(threads), "--seed", std::to_string(seed),
+                "-o", std::filesystem::absolute(folder).string()},
                stop));
 }
 
@@ -75,9 +77,9 @@ CyclesBake bakeWithCycles(const std::string& scene, const std::vector<CyclesPoin
                             std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
   const std::string printed =
       outputOf("Cycles",
-               {"blender", "-b", "--factory-startup", "-P", SACCADE_SOURCE_DIR "/bench/peers/cycles_bake.py",
-                "--", scene, "--points", (output / "points.json").string(), "--spp", std::to_string(spp),
-                "--threads", std::to_string(threads), "-o", output.string()},
+               {"blender", "-b", "--factory-startup", "-P", scriptPath("cycles_bake.py"), "--", scene,
+                "--points", (output / "points.json").string(), "--spp", std::to_string(spp), "--threads",
+                std::to_string(threads), "-o", output.string()},
                stop);
   const std::vector<std::uint8_t> values = core::readWholeFile(output / "cycles_bake.json");
   return parseCyclesBake(printed, std::string(values.begin(), values.end()), points.size());
