@@ -43,6 +43,7 @@ void applyCharts(Scene& scene, const SceneCharts& charts) {
                                   [&](std::uint32_t v) { return v < mesh.positions.size(); });
     if (!fits) throw Error(scene.path + ": the charts of mesh " + std::to_string(m) + " do not fit it");
     mesh = gatherVertices(mesh, c.sourceVertex);
+    mesh.vertexLit = c.perVertex;
     mesh.indices = c.indices;
   }
   placeCharts(scene, charts);

@@ -14,13 +14,14 @@
 namespace saccade::core {
 
 /// Of the file, and of what bakes make of a scene: files of another version are refused.
-inline constexpr std::uint32_t kMapsVersion = 3;
+inline constexpr std::uint32_t kMapsVersion = 4;
 
 /// How a mesh is cut into charts: its vertices are duplicated along chart borders.
 struct MeshCharts {
   std::vector<std::uint32_t> sourceVertex;  ///< new vertex -> vertex of the loaded mesh
   std::vector<Vec2> uv;                     ///< per new vertex: Mesh::lightmapUv
   std::vector<std::uint32_t> indices;       ///< 3 per triangle, same triangle order as the loaded mesh
+  bool perVertex = false;                   ///< Mesh::vertexLit
 };
 
 /// All of a scene: the charts of an instanced mesh are cut once, and each of its objects has a block of the

@@ -97,6 +97,7 @@ MeshCharts readCharts(ByteReader& in) {
   charts.sourceVertex = in.array<std::uint32_t>();
   charts.uv = in.array<Vec2>();
   charts.indices = in.array<std::uint32_t>();
+  charts.perVertex = in.number<std::uint8_t>() != 0;
   const std::size_t vertices = charts.sourceVertex.size();
   const bool good = charts.uv.size() == vertices && charts.indices.size() % 3 == 0 &&
                     std::all_of(charts.indices.begin(), charts.indices.end(),
@@ -148,6 +149,7 @@ void writeMaps(const std::filesystem::path& file, const IlluminationMaps& maps) 
     out.array(c.sourceVertex);
     out.array(c.uv);
     out.array(c.indices);
+    out.number(static_cast<std::uint8_t>(c.perVertex));
   }
   out.array(maps.charts.places);
   out.number(checksum(out.bytes()));

@@ -123,7 +123,7 @@ Vec3 CorrectiveTracer::shown(const Surface& surface) const {
   const Vec3 reflected = surface.material->unlit
                              ? surface.point.baseColor
                              : baseAlbedo(surface.point) * (1 / core::kPi) *
-                                   world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1);
+                                   mapIrradiance(world_, surface);
   return (surface.emitted() + reflected) * surface.point.coverage;
 }
 
@@ -143,7 +143,7 @@ Vec3 CorrectiveTracer::correction(const Surface& surface, const Bsdf& bsdf, cons
   if (bsdf.hasDiffuse()) {
     // What the base layer shows of the Lambert lobe is view-independent; emission is the same in both.
     const Vec3 viewDependent = bsdf.diffuseUnderMap() - baseAlbedo(surface.point) * (1 / core::kPi);
-    sum += viewDependent * world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1) * coverage;
+    sum += viewDependent * mapIrradiance(world_, surface) * coverage;
   }
   return sum;
 }

@@ -143,10 +143,8 @@ Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
 void prefetchSurface(const World& world, const Hit& hit) {
   const TriangleRecord& record = world.record(hit.triangle);
   const CompiledMaterial& m = world.materialOf(hit.object);
-  Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
-  if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
-  world.prefetch(world.mapFootprint(uv, 0));
-  uv = interpolate(record.uv0, hit.u, hit.v);
+  world.prefetch(world.mapFootprint(hit.object, hit.triangle, hit.u, hit.v, 0));
+  const Vec2 uv = interpolate(record.uv0, hit.u, hit.v);
   for (const TextureView* texture : {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture}) {
     if (*texture) texture->prefetch(texture->footprint(textureUv(world, hit, uv, *texture)));
   }
@@ -163,13 +161,12 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction) {
   s.closed = world.closed(hit.object);
   s.position = interpolate(shape.position, hit.u, hit.v);
   s.uv0 = interpolate(record.uv0, hit.u, hit.v);
-  s.lightmapUv = interpolate(record.lightmapUv, hit.u, hit.v);
+  s.barycentric = Vec2(hit.u, hit.v);
   Vec3 ns = interpolate(shape.normal, hit.u, hit.v);
   const Instance* place = world.instanceOf(hit.object);
   if (place) {
     s.position = place->point(s.position);
     s.offset = place->offset(s.offset);
-    s.lightmapUv = place->lightmapUv(s.lightmapUv);
     ns = place->normalToWorld * ns;
   }
   evaluateMaterial(world, hit, *s.material, s.uv0, s.point);
@@ -206,6 +203,11 @@ Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triang
   hit.ng = world.geometricNormal(object, triangle);
   const Vec3 n = unitOr(hit.ng, Vec3(0, 1, 0));
   return makeSurface(world, hit, front ? -n : n);
+}
+
+Vec3 mapIrradiance(const World& world, const Surface& at) {
+  return world.irradiance(world.mapFootprint(at.object, at.triangle, at.barycentric.x, at.barycentric.y,
+                                             at.front ? 0 : 1));
 }
 
 Vec3 smoothNormal(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
@@ -248,9 +250,7 @@ BaseLookup::BaseLookup(const World& world, const Hit& hit, const Vec3& direction
       material_(world.materialOf(hit.object)),
       front_(glm::dot(hit.ng, direction) <= 0) {
   const TriangleRecord& record = world.record(hit.triangle);
-  Vec2 uv = interpolate(record.lightmapUv, hit.u, hit.v);
-  if (const Instance* place = world.instanceOf(hit.object)) uv = place->lightmapUv(uv);
-  map_ = world.mapFootprint(uv, front_ ? 0 : 1);
+  map_ = world.mapFootprint(hit.object, hit.triangle, hit.u, hit.v, front_ ? 0 : 1);
   world.prefetch(map_);
   if (!material_.textured) return;
   uv0_ = interpolate(record.uv0, hit.u, hit.v);

@@ -12,7 +12,7 @@ struct Surface {
   Vec3 ng{0};  ///< geometric normal, unit, on the side the ray came from
   Vec3 ns{0};  ///< shading normal, unit, same side; bent so that mirror directions stay above the surface
   Vec2 uv0{0};
-  Vec2 lightmapUv{0};
+  Vec2 barycentric{0};  ///< as in Hit
   std::uint32_t triangle = 0, object = 0;
   float offset = 0;     ///< for offsetOrigin
   bool front = true;    ///< the ray came from the triangle's front
@@ -44,6 +44,9 @@ Surface makeSurface(const World& world, const Hit& hit, const Vec3& direction);
 /// normal: for map baking.
 Surface surfaceOn(const World& world, std::uint32_t object, std::uint32_t triangle, float u, float v,
                   bool front);
+
+/// What the maps hold for the side seen, W/m^2. Any thread.
+Vec3 mapIrradiance(const World& world, const Surface& at);
 
 /// The interpolated vertex normal at a hit, on the side of the unit vector `geometric`: what irradiance is
 /// measured against (normal maps are left to shading).

@@ -73,10 +73,8 @@ std::vector<SurfacePoint> surfacePoints(const World& world, std::size_t count, s
 }
 
 Vec3 mapIrradiance(const World& world, const SurfacePoint& at) {
-  const TriangleRecord& r = world.record(world.firstTriangle(at.object) + at.triangle);
-  Vec2 uv = r.lightmapUv[0] * (1 - at.b1 - at.b2) + r.lightmapUv[1] * at.b1 + r.lightmapUv[2] * at.b2;
-  if (const Instance* place = world.instanceOf(at.object)) uv = place->lightmapUv(uv);
-  return world.irradiance(uv, at.front ? 0 : 1);
+  const std::uint32_t triangle = world.firstTriangle(at.object) + at.triangle;
+  return world.irradiance(world.mapFootprint(at.object, triangle, at.b1, at.b2, at.front ? 0 : 1));
 }
 
 }  // namespace saccade::raytrace

@@ -87,7 +87,7 @@ Vec3 Walk::scattered(const Surface& surface, const Vec3& direction, int depth, f
   const Bsdf bsdf(surface, -direction);
   Vec3 radiance(0);
   if (bsdf.hasDiffuse()) {
-    radiance = bsdf.diffuseUnderMap() * world_.irradiance(surface.lightmapUv, surface.front ? 0 : 1);
+    radiance = bsdf.diffuseUnderMap() * mapIrradiance(world_, surface);
   }
   return radiance + specular(surface, bsdf, depth, weight);
 }

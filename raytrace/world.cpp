@@ -89,7 +89,7 @@ void World::placeObjects() {
     flags_.push_back(static_cast<std::uint8_t>(
         (object.closed && !scene_.materials[object.material].thinWalled ? kClosed : 0) |
         (object.id == 0 ? kDiffuse : 0) | (mesh.colors.empty() ? 0 : kColors) |
-        (mesh.instanced ? kInstanced : 0)));
+        (mesh.instanced ? kInstanced : 0) | (mesh.vertexLit ? kVertexLit : 0)));
     if (object.id > 0) objectOfId_[object.id] = o;
     if (!mesh.instanced) continue;
     if (!core::isInstanceable(object.meshToWorld) || materialOf(o).emits()) {

@@ -108,6 +108,10 @@ class World {
   }
   /// The two halves of it.
   MapFootprint mapFootprint(const Vec2& lightmapUv, int layer) const;
+  /// Of a point of a triangle (stored, as Hit::triangle) of an object; u and v as in Hit.
+  MapFootprint mapFootprint(std::uint32_t object, std::uint32_t triangle, float u, float v, int layer) const;
+  /// Where in the atlas the texel is that this point belongs to; on vertex-lit meshes the nearest vertex's.
+  Vec2 lightmapUv(std::uint32_t object, std::uint32_t triangle, float u, float v) const;
   Vec3 irradiance(const MapFootprint& f) const;
   void prefetch(const MapFootprint& f) const {
     __builtin_prefetch(mapTexels_.data() + f.at[0]);
@@ -160,6 +164,7 @@ class World {
   bool attenuates() const { return attenuates_; }
   /// Some solid splits light into colours.
   bool disperses() const { return disperses_; }
+  bool vertexLit(std::uint32_t object) const { return flags_[object] & kVertexLit; }
   bool hasColors(std::uint32_t object) const { return flags_[object] & kColors; }
   /// ID mask value (1..idCount) to object index; throws core::Error for an unknown id.
   std::uint32_t objectOfId(std::uint32_t id) const;
@@ -169,8 +174,10 @@ class World {
   friend class TreeBuilder;
   friend std::uint64_t replayRays(const World& world, const RayLog& log);
   struct Embree;
-  enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4, kInstanced = 8 };
+  enum ObjectFlag : std::uint8_t { kClosed = 1, kDiffuse = 2, kColors = 4, kInstanced = 8, kVertexLit = 16 };
   static constexpr unsigned kMapTileX = 4, kMapTileY = 2;
+  Vec2 cornerUv(std::uint32_t object, std::uint32_t triangle, int corner) const;
+  std::uint32_t mapTexelAt(const Vec2& uv, int layer) const;
   static std::uint32_t mapColumn(unsigned x);
   std::uint32_t mapRow(unsigned y, int layer) const;
   void copyMapRows(const std::uint16_t* from, int rows, unsigned firstRow, int layer);

@@ -115,6 +115,44 @@ MapFootprint World::blockFootprint(const MapFootprint& f, std::uint32_t texel) c
   return cells;
 }
 
+Vec2 World::cornerUv(std::uint32_t object, std::uint32_t triangle, int corner) const {
+  const Vec2& uv = records_[triangle].lightmapUv[corner];
+  const Instance* place = instanceOf(object);
+  return place ? place->lightmapUv(uv) : uv;
+}
+
+/// Of a texel's centre.
+std::uint32_t World::mapTexelAt(const Vec2& uv, int layer) const {
+  const auto inside = [](float v, int size) {
+    const float x = v * static_cast<float>(size), last = static_cast<float>(size - 1);
+    return static_cast<unsigned>(x > 0 ? (x < last ? x : last) : 0.0f);
+  };
+  return mapColumn(inside(uv.x, mapWidth_)) + mapRow(inside(uv.y, mapHeight_), layer);
+}
+
+MapFootprint World::mapFootprint(std::uint32_t object, std::uint32_t triangle, float u, float v,
+                                 int layer) const {
+  if (!vertexLit(object)) return mapFootprint(lightmapUv(object, triangle, u, v), layer);
+  MapFootprint f;
+  if (layer >= mapLayers_ || mapTexels_.empty()) return f;
+  // The bilinear form with its lower two texels the same: (1 - v) ((1 - r) a + r b) + v c.
+  for (int k = 0; k < 3; ++k) f.at[k] = mapTexelAt(cornerUv(object, triangle, k), layer);
+  f.at[3] = f.at[2];
+  f.right = v < 1 ? std::min(u / (1 - v), 1.0f) : 0.0f;
+  f.down = v;
+  f.dark = false;
+  return f;
+}
+
+Vec2 World::lightmapUv(std::uint32_t object, std::uint32_t triangle, float u, float v) const {
+  const float w = 1 - u - v;
+  if (vertexLit(object)) return cornerUv(object, triangle, u > v ? (u > w ? 1 : 0) : (v > w ? 2 : 0));
+  const auto& corner = records_[triangle].lightmapUv;
+  const Vec2 uv = corner[0] * w + corner[1] * u + corner[2] * v;
+  const Instance* place = instanceOf(object);
+  return place ? place->lightmapUv(uv) : uv;
+}
+
 Vec3 World::irradiance(const MapFootprint& f) const {
   if (f.dark) return Vec3(0);
   if (!mapBlocks_.empty()) {

@@ -37,7 +37,8 @@ int bake(const BakeOptions& o) {
                       .importFolder = o.importFolder,
                       .importScale = o.importScale,
                       .resume = o.resume,
-                      .checkpointEvery = std::chrono::seconds(o.checkpointSeconds)};
+                      .checkpointEvery = std::chrono::seconds(o.checkpointSeconds),
+                      .chartsOnly = !o.exportFile.empty()};
   const auto workspace = openWorkspace(o.scene, request, interruptToken());
   const std::string file = mapsPath(workspace->maps.key, o.scene, request).string();
   if (!o.exportFile.empty()) exportLit(*workspace, o.exportFile, tracerThreads(o.run), interruptToken());

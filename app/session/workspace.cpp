@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -75,6 +76,11 @@ raytrace::ImportedLight importReported(const BakeRequest& bake, const core::Load
   return imported;
 }
 
+bool keepsLightByVertex(const core::SceneCharts& charts) {
+  return std::any_of(charts.meshes.begin(), charts.meshes.end(),
+                     [](const core::MeshCharts& mesh) { return mesh.perVertex; });
+}
+
 /// Which meshes' second UV sets are kept as the layout of their charts; nothing where no mesh has one.
 void reportOwnAtlases(const raytrace::AtlasCounts& counts) {
   using raytrace::AtlasFault;
@@ -93,13 +99,19 @@ void reportOwnAtlases(const raytrace::AtlasCounts& counts) {
 /// Charts the scene and builds its world.
 raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
                                    const std::stop_token& stop) {
-  raytrace::LightCharts charts = raytrace::chartByLight(
-      w.scene, w.plan, {.quality = options.quality, .seed = bake.seed, .threads = bake.threads}, {{}, stop});
+  raytrace::LightCharts charts = raytrace::chartByLight(w.scene, w.plan,
+                                                        {.quality = options.quality,
+                                                         .seed = bake.seed,
+                                                         .threads = bake.threads,
+                                                         .vertexLight = !bake.chartsOnly},
+                                                        {{}, stop});
   w.world = std::move(charts.world);
   spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; direct light misses {:.2g} % by them",
                charts.atlas.chartCount, charts.atlas.size, charts.atlas.size, charts.finestMetres,
                charts.coarsestMetres, 100 * charts.relativeError);
   reportOwnAtlases(charts.atlas.ownAtlases);
+  if (const std::size_t n = charts.atlas.vertexLitMeshes; n > 0)
+    spdlog::info("{} {} light by vertex", n, n == 1 ? "mesh keeps its" : "meshes keep their");
   return std::move(charts.atlas);
 }
 
@@ -217,6 +229,10 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
   const bool namedByUser = !bake.file.empty() || !options.mapsFile.empty();
   std::optional<core::IlluminationMaps> found;
   if (!bake.always) found = existingMaps(file, key, namedByUser);
+  if (found && bake.chartsOnly && keepsLightByVertex(found->charts)) {
+    spdlog::info("{} keeps light by vertex, which glTF cannot hold: baking again", file.string());
+    found.reset();
+  }
   if (found) {
     core::applyCharts(w->scene, found->charts);
     w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
@@ -230,6 +246,7 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     const core::SceneState state = core::sceneState(w->scene);
     std::optional<EarlierMaps> earlier;
     if (plain) earlier = earlierMaps(w->scene, state, settingsName(options, bake));
+    if (earlier && bake.chartsOnly && keepsLightByVertex(earlier->maps.charts)) earlier.reset();
     Prepared prepared;
     if (earlier)
       prepared = chartLikeEarlier(*w, *earlier, state, options, bake, stop);

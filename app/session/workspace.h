@@ -37,6 +37,7 @@ struct BakeRequest {
   float importScale = 1;               ///< irradiance = pi * value * scale
   bool resume = false;                 ///< go on from a checkpoint (a bake that is not `always` does anyway)
   std::chrono::seconds checkpointEvery{60};
+  bool chartsOnly = false;  ///< no light by vertex, for exports; maps with any are baked again
 };
 
 /// Loads the scene and prints its warnings. Throws core::Error.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/scene/instances.h"
+#include "core/scene/median_edge.h"
 #include "core/scene/sheen.h"
 #include "core/scene/texture_mean.h"
 
@@ -29,9 +30,11 @@ std::string number(double x) {
   return text;
 }
 
-std::string counted(std::size_t n, const char* thing) {
-  return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
+std::string counted(std::size_t n, const char* one, const std::string& more) {
+  return std::to_string(n) + " " + (n == 1 ? one : more);
 }
+
+std::string counted(std::size_t n, const char* thing) { return counted(n, thing, std::string(thing) + "s"); }
 
 /// "1 solid tints light", "2 solids tint light".
 std::string counted(std::size_t n, const char* thing, const char* oneDoes, const char* severalDo) {
@@ -96,6 +99,15 @@ void sizeLightmap(const Scene& scene, const Census& c, int megabytes, Plan& plan
   plan.lightmapSize = std::clamp(stepped, kSmallestMap, kLargestMap);
 }
 
+/// Meshes in world space with edges mostly shorter than the coarsest texel.
+std::size_t countDense(const Scene& scene, float coarsestTexel) {
+  return static_cast<std::size_t>(
+      std::count_if(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
+        return !mesh.instanced && mesh.positions.size() >= kDenseVertices &&
+               medianEdge(mesh) < static_cast<double>(coarsestTexel);
+      }));
+}
+
 std::string describe(const Environment& e) {
   const ImageRgb& image = e.radiance;
   return e.name + ", " + std::to_string(image.width()) + "x" + std::to_string(image.height()) +
@@ -148,6 +160,10 @@ void describe(const Scene& scene, const Census& c, int mapsMegabytes, Plan& plan
            number(static_cast<double>(plan.finestTexel)) + " to " +
            number(static_cast<double>(plan.coarsestTexel)) + " m, as light varies",
        "no surface");
+  line("light by vertex", plan.denseMeshes > 0,
+       counted(plan.denseMeshes, "mesh with edges", "meshes with edges") +
+           " shorter than the coarsest texel: kept by vertex where charts would take more",
+       "no mesh is dense enough: light is kept in charts");
   const std::size_t lights = scene.lights.size() + c.emitting;
   line("environment", scene.environment != nullptr, scene.environment ? describe(*scene.environment) : "",
        "none: rays that miss everything are black");
@@ -216,6 +232,7 @@ Plan makePlan(const Scene& scene, int mapsMegabytes) {
         kDepthRefraction + kDepthPerObject * static_cast<int>(std::min<std::size_t>(c.transmitting - 1, 2)));
   if (c.diffuseArea > 0) plan.diffuseEnergyLeftOut = c.leftOut / c.diffuseArea;
   sizeLightmap(scene, c, mapsMegabytes, plan);
+  plan.denseMeshes = countDense(scene, plan.coarsestTexel);
   describe(scene, c, mapsMegabytes, plan);
   return plan;
 }

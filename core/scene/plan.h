@@ -26,6 +26,7 @@ struct Plan {
   int recursionDepth = 0;    ///< longest specular chain followed
   int lightmapSize = 0;      ///< largest atlas side in texels, by the memory that maps may take
   float finestTexel = 0, coarsestTexel = 0;  ///< metres, between which a bake chooses
+  std::size_t denseMeshes = 0;      ///< whose light a bake may keep by vertex: many vertices, short edges
   double diffuseEnergyLeftOut = 0;  ///< area-weighted mean non-Lambert albedo of objects treated as diffuse
   std::vector<PlanLine> lines;      ///< for `saccade info`
 };

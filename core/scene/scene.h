@@ -120,8 +120,11 @@ struct Mesh {
   std::vector<Vec3> normals;   ///< unit, always filled by the loader (flat ones where the file has none)
   std::vector<Vec4> tangents;  ///< xyz unit, w = +-1; filled when Material::needsTangents()
   std::vector<Vec2> uv0, uv1;
-  std::vector<Vec4> colors;            ///< COLOR_0, linear
-  std::vector<Vec2> lightmapUv;        ///< for placeInAtlas; filled by applyCharts (core/maps.h)
+  std::vector<Vec4> colors;      ///< COLOR_0, linear
+  std::vector<Vec2> lightmapUv;  ///< for placeInAtlas; filled by applyCharts (core/maps.h)
+  /// Irradiance is kept by vertex: lightmapUv is the centre of the vertex's own texel, and irradiance is
+  /// linear on each triangle.
+  bool vertexLit = false;
   std::vector<std::uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from the front
 
   std::size_t triangleCount() const { return indices.size() / 3; }

@@ -237,6 +237,7 @@ std::uint64_t BakeJob::settingsHash() const {
   hash.add(options_.seed);
   hash.add(texels_.size());
   for (const core::Mesh& mesh : world_.scene().meshes) {
+    hash.add(mesh.vertexLit);
     for (const std::uint32_t i : mesh.indices) {
       hash.add(mesh.lightmapUv[i].x);
       hash.add(mesh.lightmapUv[i].y);

@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/median_edge.h"
 #include "raytrace/bake/charts.h"
 
 namespace saccade::raytrace {
 namespace {
 
-constexpr int kBorder = 1;            // texels around a chart that are its own: two between charts
+constexpr int kBorder = 1;        // texels around a chart that are its own: two between charts
+constexpr double kOfAtlas = 0.5;  // that meshes with an atlas of their own, or lit by vertex, may take
+// Light by vertex, as measured (docs/design.md): on a mesh that is bumpy at the scale of its edges a vertex
+// is worth two to four texels, for light turns with the normals; on a smooth one it is worth one.
+constexpr double kCrumpled = 1.5;     // texels that charts take, over those that their surface would
+constexpr double kVertexWorth = 2;    // texels
 constexpr double kMostDoublings = 6;  // of an object's block: its border widens with it
 
 int texelsFor(double metres, double texel) {
@@ -34,11 +40,14 @@ double unitOf(const core::Object& object) {
 
 }  // namespace
 
-ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels)
+ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels, VertexLight vertexLight)
     : scene_(scene),
       charts_(scene.meshes.size()),
       chartOfTriangle_(scene.meshes.size()),
-      own_(scene.meshes.size()) {
+      own_(scene.meshes.size()),
+      vertices_(scene.meshes.size()),
+      mostTexels_(mostTexels),
+      vertexLight_(vertexLight) {
   shareTexels(mostTexels);
   std::vector<std::size_t> blockOf(scene.meshes.size(), kNone);
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
@@ -76,7 +85,6 @@ void ChartLayout::addInstance(std::size_t o, std::size_t& block) {
 
 /// By surface in the world; a mesh's objects share what it gets.
 void ChartLayout::shareTexels(double mostTexels) {
-  constexpr double kOfAtlas = 0.5;
   std::vector<double> area(scene_.meshes.size(), 0);
   std::vector<double> objects(scene_.meshes.size(), 0);
   double total = 0;
@@ -104,7 +112,9 @@ std::vector<ChartLayout::PlacedChart>& ChartLayout::chartsOf(std::uint32_t mesh)
     keepAtlas(mesh);
     return charts;
   }
-  for (Chart& chart : clusterMesh(scene_.meshes[mesh])) {
+  std::vector<Chart> clusters = clusterMesh(scene_.meshes[mesh]);
+  if (lightByVertex(mesh, clusters)) return charts;
+  for (Chart& chart : clusters) {
     for (const std::uint32_t t : chart.triangles) chartOf[t] = static_cast<std::uint32_t>(charts.size());
     charts.push_back({std::move(chart), {}});
   }
@@ -119,6 +129,33 @@ void ChartLayout::keepAtlas(std::uint32_t mesh) {
   charts_[mesh].push_back(std::move(whole));
 }
 
+/// One rectangle of fixed size, where it pays.
+bool ChartLayout::lightByVertex(std::uint32_t m, const std::vector<Chart>& clusters) {
+  const core::Mesh& mesh = scene_.meshes[m];
+  if (vertexLight_ == VertexLight::never || mesh.instanced || !(shares_[m] > 0)) return false;
+  if (mesh.positions.size() < core::kDenseVertices) return false;
+  const double area = areaOf(mesh), texel = std::sqrt(kOfAtlas * area / shares_[m]);  // of all, evenly
+  if (!(texel > 0)) return false;
+  double charts = 0;
+  for (const Chart& c : clusters) {
+    const glm::dvec2 extent = c.hi - c.lo;
+    charts += (texelsFor(extent.x, texel) + 2.0 * kBorder) * (texelsFor(extent.y, texel) + 2.0 * kBorder);
+  }
+  PlacedChart whole;
+  whole.edge = core::medianEdge(mesh);
+  if (whole.edge > texel || charts < kCrumpled * area / (texel * texel)) return false;
+  VertexTexels vertices = vertexTexels(mesh);
+  whole.place.width = vertices.width() + 2 * kBorder;
+  whole.place.height = vertices.height() + 2 * kBorder;
+  const double own = static_cast<double>(whole.place.width) * whole.place.height;
+  if (own > kVertexWorth * charts || vertexTexelCount_ + own > kOfAtlas * mostTexels_) return false;
+  ++vertexLitMeshes_;
+  vertexTexelCount_ += own;
+  vertices_[m] = std::move(vertices);
+  charts_[m].push_back(std::move(whole));
+  return true;
+}
+
 void ChartLayout::addItem(const std::vector<PlacedChart>& charts, std::size_t first, std::size_t last,
                           double unit) {
   LayoutItem item;
@@ -126,6 +163,7 @@ void ChartLayout::addItem(const std::vector<PlacedChart>& charts, std::size_t fi
     const glm::dvec2 extent = (charts[c].chart.hi - charts[c].chart.lo) * unit;
     item.rectangle += extent.x * extent.y;
     item.largestExtent = std::max({item.largestExtent, extent.x, extent.y});
+    item.edge = charts[c].edge;
   }
   count_ += last - first;
   items_.push_back(item);
@@ -141,6 +179,7 @@ std::size_t ChartLayout::itemOf(std::size_t object, std::size_t triangle) const 
 void ChartLayout::size(std::span<const double> texelMetres) {
   const auto sizeCharts = [](PlacedChart& p, double wished) {
     const double texel = std::min(wished, p.coarsestTexel);
+    if (p.edge > 0) return;
     const glm::dvec2 extent = p.chart.hi - p.chart.lo;
     p.place.width = texelsFor(extent.x, texel) + 2 * kBorder;
     p.place.height = texelsFor(extent.y, texel) + 2 * kBorder;
@@ -253,6 +292,8 @@ core::SceneCharts ChartLayout::cut(int size) const {
     if (charts_[m].empty()) {
       const core::Vec2 point = mesh.instanced ? core::Vec2(0) : shared;
       out.meshes.push_back(wholeMesh(mesh, std::vector<core::Vec2>(mesh.positions.size(), point)));
+    } else if (vertices_[m].count > 0) {
+      out.meshes.push_back(vertexLitMesh(static_cast<std::uint32_t>(m), size));
     } else if (own_[m].fault == AtlasFault::none) {
       out.meshes.push_back(keptMesh(static_cast<std::uint32_t>(m), size));
     } else {
@@ -313,6 +354,21 @@ core::MeshCharts ChartLayout::wholeMesh(const core::Mesh& mesh, std::vector<core
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) out.sourceVertex[v] = static_cast<std::uint32_t>(v);
   out.uv = std::move(uv);
   out.indices = mesh.indices;
+  return out;
+}
+
+core::MeshCharts ChartLayout::vertexLitMesh(std::uint32_t m, int size) const {
+  const Place& place = charts_[m].front().place;
+  const auto width = static_cast<std::uint32_t>(vertices_[m].width());
+  std::vector<core::Vec2> uv;
+  uv.reserve(vertices_[m].numberOf.size());
+  for (const std::uint32_t n : vertices_[m].numberOf) {
+    const core::Vec2 texel(static_cast<float>(place.x + kBorder) + static_cast<float>(n % width),
+                           static_cast<float>(place.y + kBorder) + static_cast<float>(n / width));
+    uv.push_back((texel + 0.5f) / static_cast<float>(size));
+  }
+  core::MeshCharts out = wholeMesh(scene_.meshes[m], std::move(uv));
+  out.perVertex = true;
   return out;
 }
 

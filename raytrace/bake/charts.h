@@ -8,6 +8,8 @@
 //
 // A mesh whose second UV set is a proper atlas (own_atlas.h) keeps that instead, as one rectangle.
 //
+// A dense, crumpled mesh may keep its light by vertex instead (ChartLayout).
+//
 // An instanced mesh is cut once; its charts are packed into a block, and each object has such a block in the
 // atlas, larger by a power of two where the object is larger.
 #pragma once
@@ -28,8 +30,9 @@ struct ChartAtlas {
   /// Side of a texel on a surface parallel to its chart. On instances within a factor of sqrt(2): their sizes
   /// count as powers of two times that of the smallest with the same mesh.
   float texelMetres = 0;
-  std::size_t chartCount = 0;  ///< an atlas that a mesh brings counts as one
-  AtlasCounts ownAtlases{};    ///< meshes that bring one, and the others by reason
+  std::size_t chartCount = 0;       ///< an atlas that a mesh brings counts as one
+  AtlasCounts ownAtlases{};         ///< meshes that bring one, and the others by reason
+  std::size_t vertexLitMeshes = 0;  ///< by chartByLight only
 };
 
 /// Whether the base layer ever shows irradiance on this material: it has a Lambert part. Metals, clear glass,

@@ -5,25 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "raytrace/bake/density_window.h"
+#include "raytrace/bake/vertex_rings.h"
+
 namespace saccade::raytrace {
 namespace {
 
-/// Window half sides in texels, the growing sequence that is tried.
-constexpr std::array<int, 15> kRadii = {0, 1, 2, 3, 4, 6, 8, 11, 16, 22, 32, 45, 64, 90, 128};
 constexpr std::uint8_t kNoRadius = 255;  // no surface there
-/// Sums within fewer effective particles than this have no usable error of their own.
-constexpr double kFew = 6;
-
-/// What a window holds. Weights are in mean particles.
-struct WindowSum {
-  glm::dvec3 weight{0};
-  double squared = 0;  ///< of luminance weights
-  double area = 0;     ///< m^2
-
-  double luminance() const { return 0.2126 * weight.x + 0.7152 * weight.y + 0.0722 * weight.z; }
-  double effectiveCount() const { return squared > 0 ? luminance() * luminance() / squared : 0; }
-};
-
 /// Sums over any rectangle of one plane in constant time. Flux sums are integers modulo 2^64: exact.
 class SummedArea {
  public:
@@ -78,21 +66,15 @@ std::size_t chooseRadius(const SummedArea& sums, const ChartRect& chart, int x, 
                          const DensityOptions& options) {
   const int longest = std::max(chart.x1 - chart.x0, chart.y1 - chart.y0);
   const WindowSum pool = sums.window(chart, x, y, options.pooledRadius);
-  double low = 0, high = core::kInfinity;
+  WindowRule rule(options);
   std::size_t best = 0;
   for (std::size_t i = 0; i < kRadii.size() && kRadii[i] <= options.maxRadius; ++i) {
     WindowSum sum = sums.window(chart, x, y, kRadii[i]);
     if (kRadii[i] < options.pooledRadius)
       sum.squared = std::max(sum.squared, pool.squared * sum.area / pool.area);
-    const double mean = sum.luminance() / sum.area;
-    // Few or no particles do not pass for certainty.
-    const double error = options.confidence * std::sqrt(sum.squared + options.doubt) / sum.area;
-    const double count = sum.effectiveCount();
-    if (mean - error > high || mean + error < low) break;
-    low = std::max(low, mean - error);
-    high = std::min(high, mean + error);
+    if (!rule.takes(sum)) break;
     best = i;
-    if (count >= options.enough || kRadii[i] >= longest) break;
+    if (rule.suffices(sum) || kRadii[i] >= longest) break;
   }
   return best;
 }
@@ -111,37 +93,6 @@ std::size_t medianRadius(const std::vector<std::uint8_t>& chosen, int size, cons
   std::nth_element(near.begin(), near.begin() + count / 2, near.begin() + count);
   return near[count / 2];
 }
-
-/// A plane through the densities of a window's parts by least squares, weighted by a bell over the window:
-/// its value at the centre. Where the window is cut at a chart's border, or light rises across it, the mean
-/// would be off by the slope times the way to the window's centroid (local linear regression, Fan 1992).
-class LocalPlane {
- public:
-  /// `at`: middle of the part, from the window's centre, in half sides.
-  void add(const WindowSum& part, const glm::dvec2& at) {
-    const double bell = (kBellReach - at.x * at.x) * (kBellReach - at.y * at.y);
-    const glm::dvec3 basis(1, at.x, at.y);
-    normal_ += glm::outerProduct(basis, basis) * (bell * part.area);
-    for (int c = 0; c < 3; ++c) moments_[c] += basis * (bell * part.weight[c]);
-  }
-  /// Weight per area at the centre, no less than a fraction of `mean` and no more than a multiple: noise.
-  glm::dvec3 center(const glm::dvec3& mean) const {
-    const double scale = normal_[0][0];
-    const glm::dmat3 m = normal_ / scale;
-    if (!(glm::determinant(m) > kSmallestDeterminant)) return mean;
-    const glm::dvec3 row = glm::inverse(m)[0];  // symmetric
-    glm::dvec3 value;
-    for (int c = 0; c < 3; ++c) value[c] = glm::dot(row, moments_[c]) / scale;
-    return glm::clamp(value, mean / kLargestChange, mean * kLargestChange);
-  }
-
- private:
-  static constexpr double kBellReach = 1.2;  // half sides: not quite 0 at the window's edge
-  static constexpr double kSmallestDeterminant = 1e-4;
-  static constexpr double kLargestChange = 3;
-  glm::dmat3 normal_{0};
-  glm::dvec3 moments_[3] = {};
-};
 
 DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, int y, std::size_t radius,
                          double watts) {
@@ -165,11 +116,7 @@ DensityEstimate estimate(const SummedArea& sums, const ChartRect& chart, int x, 
     }
     density = plane.center(density);
   }
-  DensityEstimate out;
-  out.irradiance = Vec3(density * watts);
-  if (whole.luminance() > 0)
-    out.relativeError = static_cast<float>(std::sqrt(whole.squared) / whole.luminance());
-  return out;
+  return estimateOf(whole, density, watts);
 }
 
 }  // namespace
@@ -209,7 +156,8 @@ void estimateDensity(const TexelMap& texels, std::span<const float> areas, const
     for (int x = 0; x < texels.size(); ++x) {
       const std::size_t texel = row * static_cast<std::size_t>(texels.size()) + static_cast<std::size_t>(x);
       if (texels.chartOf(texel) < 0 || !(areas[texel] > 0)) continue;
-      visit(texel, texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))], x, y);
+      const ChartRect& chart = texels.charts()[static_cast<std::size_t>(texels.chartOf(texel))];
+      if (!chart.byVertex) visit(texel, chart, x, y);
     }
   };
   const auto rows = static_cast<std::size_t>(texels.size());
@@ -223,6 +171,7 @@ void estimateDensity(const TexelMap& texels, std::span<const float> areas, const
       out[texel] = estimate(sums, chart, x, y, medianRadius(chosen, texels.size(), chart, x, y), watts);
     });
   });
+  estimateByVertex(texels, areas, flux, plane, watts, options, progress, out);
 }
 
 }  // namespace saccade::raytrace

@@ -90,7 +90,9 @@ class Gatherer {
 
   Vec3 lightAt(const Surface& surface) const {
     const std::vector<Vec3>& layer = source_.layers[surface.front ? 0 : 1];
-    return layer.empty() ? Vec3(0) : layer[texels_.texelAt(surface.lightmapUv)];
+    if (layer.empty()) return Vec3(0);
+    const Vec2& b = surface.barycentric;
+    return layer[texels_.texelAt(world_.lightmapUv(surface.object, surface.triangle, b.x, b.y))];
   }
 
   const World& world_;

@@ -51,7 +51,7 @@ std::unordered_map<std::size_t, TexelCover> partialTexels(const TexelMap& texels
   std::unordered_map<std::size_t, TexelCover> out;
   const int size = texels.size();
   for (std::size_t i = 0; i < filled.size(); ++i) {
-    if (!filled[i]) continue;
+    if (!filled[i] || texels.charts()[static_cast<std::size_t>(texels.chartOf(i))].byVertex) continue;
     const int x = static_cast<int>(i % static_cast<std::size_t>(size)),
               y = static_cast<int>(i / static_cast<std::size_t>(size));
     bool border = x == 0 || y == 0 || x + 1 == size || y + 1 == size;

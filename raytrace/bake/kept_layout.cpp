@@ -115,7 +115,8 @@ class Layout {
     if (from_[object.mesh] != SceneMatch::kNone) return from_[object.mesh] == mesh;
     const core::MeshCharts &was = previous_.charts.meshes[earlier.mesh],
                            &is = fresh_.charts.meshes[object.mesh];
-    if (was.sourceVertex != is.sourceVertex || was.indices != is.indices) return false;
+    if (was.sourceVertex != is.sourceVertex || was.indices != is.indices || was.perVertex != is.perVertex)
+      return false;
     from_[object.mesh] = mesh;
     return true;
   }
@@ -123,6 +124,10 @@ class Layout {
   /// By vertex.
   std::vector<std::int32_t> chartsOf(std::size_t m, std::int32_t& count) {
     const core::Mesh& mesh = scene_.meshes[m];
+    if (mesh.vertexLit) {
+      count = 1;
+      return std::vector<std::int32_t>(mesh.positions.size(), 0);
+    }
     const std::vector<std::int32_t> ofTriangle = chartsOfUv(mesh, fresh_.charts.meshes[m].uv);
     std::vector<std::int32_t> out(mesh.positions.size(), 0);
     count = 0;

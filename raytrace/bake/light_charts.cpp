@@ -90,12 +90,14 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   const Wish& wish = wishOf(options.quality);
   const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
   const double mostTexels = std::min(wish.texels, kMostFill * largest * largest);
-  ChartLayout layout(scene, mostTexels);
+  const bool mayByVertex = options.vertexLight && plan.denseMeshes > 0;
+  ChartLayout layout(scene, mostTexels, mayByVertex ? VertexLight::whereItPays : VertexLight::never);
   const double even = std::max(std::sqrt(rectangleOf(layout) / kProbeFill) / kProbeSize, 1e-9);
   std::vector<double> sides(layout.items().size(), even);
   LightCharts out;
   out.atlas.chartCount = layout.chartCount();
   out.atlas.ownAtlases = layout.ownAtlases();
+  out.atlas.vertexLitMeshes = layout.vertexLitMeshes();
   const int probeSize = packWithin(layout, sides, largest);
   out.atlas.charts = layout.cut(probeSize);
   core::applyCharts(scene, out.atlas.charts);

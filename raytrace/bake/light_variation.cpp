@@ -157,6 +157,10 @@ Probe probe(const World& world, const TexelMap& texels, const ItemSurface& item,
   const double middle[2] = {sets[0].at(centre), sets[1].at(centre)};
   Probe out;
   out.irradiance = 0.5 * (middle[0] + middle[1]);
+  if (world.vertexLit(e.object)) {  // has no texels to choose, and no way to go from one point to another
+    out.square.fill(std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
   for (std::size_t d = 0; d < kVariationDistances; ++d) {
     const Vec2 away = step * static_cast<float>(options.metres[d]);
     const std::optional<MeshPoint> before = pointAt(world, texels, uv - away),

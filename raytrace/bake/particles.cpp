@@ -69,38 +69,33 @@ class Tracer {
     const float cosShading =
         -glm::dot(direction, smoothNormal(world_, hit.object, hit.triangle, hit.u, hit.v, surface.ng));
     const float ratio = std::clamp(cosShading / std::max(cosGeometric, 1e-6f), 0.0f, kMaxNormalRatio);
-    add(hit.object, surface.lightmapUv, surface.front, weight * ratio);
+    const Vec2 b(hit.u, hit.v);
+    add(hit.object, hit.triangle, b, surface.front, weight * ratio);
     addToDuplicates(hit.object, hit, surface.front, weight * ratio);
     for (const Twin& twin : world_.twinsOf(hit.object)) {
-      const Vec2 uv = lightmapUvOf(hit, {0, 1, 2}, hit.triangle);
-      add(twin.object, world_.instanceOf(twin.object)->lightmapUv(uv), surface.front, weight * ratio);
+      add(twin.object, hit.triangle, b, surface.front, weight * ratio);
       addToDuplicates(twin.object, hit, surface.front, weight * ratio);
     }
   }
 
   /// `object`: of the hit, or its twin.
   void addToDuplicates(std::uint32_t object, const Hit& hit, bool front, const Vec3& weight) {
+    const float b[3] = {1 - hit.u - hit.v, hit.u, hit.v};
     for (const Duplicate& d : duplicates_.of(hit.triangle)) {
-      Vec2 uv = lightmapUvOf(hit, d.corner, d.triangle);
-      const Instance* place = world_.instanceOf(object);
-      if (place) uv = place->lightmapUv(uv);
-      add(place ? object : world_.record(d.triangle).object, uv, front != d.flipped, weight);
+      float of[3];
+      for (std::size_t k = 0; k < 3; ++k) of[d.corner[k]] = b[k];
+      const bool instanced = world_.instanceOf(object) != nullptr;
+      add(instanced ? object : world_.record(d.triangle).object, d.triangle, Vec2(of[1], of[2]),
+          front != d.flipped, weight);
     }
   }
 
-  /// In the charts of the mesh. Corner k of the triangle that was hit is corner[k] of `triangle`.
-  Vec2 lightmapUvOf(const Hit& hit, const std::array<std::uint8_t, 3>& corner, std::uint32_t triangle) const {
-    const float b[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-    Vec2 uv(0);
-    for (std::size_t k = 0; k < 3; ++k) uv += world_.record(triangle).lightmapUv[corner[k]] * b[k];
-    return uv;
-  }
-
-  void add(std::uint32_t objectIndex, const Vec2& lightmapUv, bool front, const Vec3& weight) {
+  /// `b`: barycentric weights of the triangle's corners 1 and 2.
+  void add(std::uint32_t objectIndex, std::uint32_t triangle, const Vec2& b, bool front, const Vec3& weight) {
     const core::Scene& scene = world_.scene();
     const core::Object& object = scene.objects[objectIndex];
     if (!front && !scene.materials[static_cast<std::size_t>(object.material)].doubleSided) return;
-    const std::size_t texel = texels_.texelAt(lightmapUv);
+    const std::size_t texel = texels_.texelAt(world_.lightmapUv(objectIndex, triangle, b.x, b.y));
     if (texels_.chartOf(texel) < 0) return;  // shows no irradiance
     const int layer = front ? 0 : 1;
     state_.flux.add(texel, diffuse_ ? ParticleState::indirectPlane(layer) : state_.causticPlane(layer),

@@ -139,6 +139,7 @@ std::vector<Seam> findSeams(const TexelMap& texels) {
     const core::Material& material = scene.materials[static_cast<std::size_t>(object.material)];
     if (!showsIrradiance(material)) continue;
     const core::Mesh& mesh = scene.meshOf(object);
+    if (mesh.vertexLit) continue;  // its look-ups are not bilinear, and it has no charts
     for (const std::size_t corner : borderCorners(mesh))
       addBorder(object, mesh, corner, texels.size(), material.doubleSided, edges);
   }

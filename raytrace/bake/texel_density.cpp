@@ -49,6 +49,7 @@ PowerLaw fit(const LightVariation& v, std::span<const double> metres, double flo
 
 struct Item {
   double area, rectangle;
+  double edge;  ///< LayoutItem::edge
   PowerLaw law;
 };
 
@@ -65,7 +66,8 @@ class Chooser {
     mean_ = area_ > 0 ? flux / area_ : 0;
     const double floor = 1e-8 * mean_ * mean_;
     for (std::size_t i = 0; i < variation.size(); ++i) {
-      items_.push_back({variation[i].area, layout.items()[i].rectangle, fit(variation[i], metres, floor)});
+      items_.push_back({variation[i].area, layout.items()[i].rectangle, layout.items()[i].edge,
+                        fit(variation[i], metres, floor)});
     }
   }
 
@@ -102,6 +104,10 @@ class Chooser {
     std::vector<double> out;
     out.reserve(items_.size());
     for (const Item& i : items_) {
+      if (i.edge > 0) {
+        out.push_back(i.edge);
+        continue;
+      }
       const double weight = i.area * i.law.factor * i.law.power;
       const double h =
           weight > 0 ? std::pow(2 * std::exp(logMultiplier) * i.rectangle / weight, 1 / (i.law.power + 2))

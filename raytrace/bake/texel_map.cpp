@@ -74,11 +74,14 @@ void TexelMap::findCharts() {
                         "' has no charts; call applyCharts first");
     }
     std::vector<std::int32_t>& chartOf = chartOfTriangle_[object.mesh];
-    if (chartOf.empty()) chartOf = chartsOfUv(mesh, mesh.lightmapUv);
+    if (chartOf.empty()) {
+      chartOf = mesh.vertexLit ? std::vector<std::int32_t>(mesh.triangleCount(), 0)
+                               : chartsOfUv(mesh, mesh.lightmapUv);
+    }
     firstChart_[o] = static_cast<std::int32_t>(charts_.size());
     const std::int32_t count = chartOf.empty() ? 0 : 1 + *std::max_element(chartOf.begin(), chartOf.end());
     charts_.resize(charts_.size() + static_cast<std::size_t>(count),
-                   {size_, size_, 0, 0, material.doubleSided});
+                   {size_, size_, 0, 0, material.doubleSided, mesh.vertexLit});
     anyDoubleSided_ |= material.doubleSided;
   }
 }
@@ -91,6 +94,10 @@ std::vector<TexelMap::Placed> TexelMap::placeFragments() const {
     const core::Mesh& mesh = scene_.meshOf(object);
     const glm::dmat3 meshToWorld(object.meshToWorld);
     for (std::size_t t = 0; t < mesh.triangleCount(); ++t) {
+      if (mesh.vertexLit) {
+        placeByVertex(o, t, worldArea(mesh, meshToWorld, t), placed);
+        continue;
+      }
       const Plane2 a = texelPosition(scene_, o, 3 * t, size_), b = texelPosition(scene_, o, 3 * t + 1, size_),
                    c = texelPosition(scene_, o, 3 * t + 2, size_);
       const double whole = 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
@@ -109,6 +116,23 @@ std::vector<TexelMap::Placed> TexelMap::placeFragments() const {
   return placed;
 }
 
+std::uint32_t TexelMap::vertexTexel(std::size_t object, std::size_t corner) const {
+  const Plane2 p = texelPosition(scene_, object, corner, size_);
+  return static_cast<std::uint32_t>(static_cast<int>(p.y) * size_ + static_cast<int>(p.x));
+}
+
+void TexelMap::placeByVertex(std::size_t object, std::size_t triangle, double area,
+                             std::vector<Placed>& out) const {
+  const auto third = static_cast<float>(area / 3);
+  if (!(third > 0) || !std::isfinite(third)) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.push_back({vertexTexel(object, 3 * triangle + k),
+                   firstChart_[object],
+                   1,
+                   {static_cast<std::uint32_t>(object), static_cast<std::uint32_t>(triangle), third}});
+  }
+}
+
 void TexelMap::cover() {
   std::vector<Placed> placed = placeFragments();
   std::vector<float> filled(texelCount(), 0.0f);
@@ -121,8 +145,8 @@ void TexelMap::cover() {
   for (const Placed& p : placed) {
     const int x = static_cast<int>(p.texel) % size_, y = static_cast<int>(p.texel) / size_;
     ChartRect& rect = charts_[static_cast<std::size_t>(p.chart)];
-    rect = {std::min(rect.x0, x), std::min(rect.y0, y), std::max(rect.x1, x + 1), std::max(rect.y1, y + 1),
-            rect.doubleSided};
+    rect = {std::min(rect.x0, x),     std::min(rect.y0, y), std::max(rect.x1, x + 1),
+            std::max(rect.y1, y + 1), rect.doubleSided,     rect.byVertex};
     ++count[p.texel + 1];
     chartOf_[p.texel] = p.chart;
     area_[p.texel] += p.fragment.area;
@@ -160,6 +184,21 @@ TexelCover TexelMap::coverOf(std::size_t texel) const {
   return {twice > 0 ? moment / twice : centre, 0.5 * twice};
 }
 
+/// Two triangles make up the third of a triangle that is its vertex's: (vertex, middle of a side, centroid).
+MeshPoint TexelMap::pointByVertex(const TexelFragment& part, std::size_t texel, float v, float w) const {
+  std::size_t k = 0;
+  while (k < 2 && vertexTexel(part.object, std::size_t{3} * part.triangle + k) != texel) ++k;
+  const bool second = v >= 0.5f;
+  const float root = std::sqrt(second ? 2 * v - 1 : 2 * v);
+  // root * ((1 - w) * middle + w * centroid), from the vertex.
+  const float far = root * w / 3, near = far + root * (1 - w) / 2;
+  float b[3];
+  b[(k + 1) % 3] = second ? far : near;
+  b[(k + 2) % 3] = second ? near : far;
+  b[k] = 1 - near - far;
+  return {part.object, part.triangle, b[1], b[2]};
+}
+
 MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const {
   const std::span<const TexelFragment> parts = fragments(texel);
   const TexelFragment* part = &parts.front();
@@ -169,6 +208,7 @@ MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const 
     if (rest < f.area) break;
     rest -= f.area;
   }
+  if (charts_[static_cast<std::size_t>(chartOf_[texel])].byVertex) return pointByVertex(*part, texel, v, w);
   const std::size_t corner = std::size_t{3} * part->triangle;
   const Plane2 a = texelPosition(scene_, part->object, corner, size_),
                b = texelPosition(scene_, part->object, corner + 1, size_),

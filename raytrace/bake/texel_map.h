@@ -1,4 +1,7 @@
 // Which surface each texel of the atlas holds: covered areas, exact at chart borders, and points on them.
+//
+// Texels of a mesh whose light is kept by vertex (core::Mesh::vertexLit) hold the points whose largest
+// barycentric weight is that of their vertex: a third of each triangle around it.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +24,7 @@ struct TexelFragment {
 struct ChartRect {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   bool doubleSided = false;  ///< its back has its own irradiance, in layer 1
+  bool byVertex = false;     ///< a texel for each vertex of a mesh: texels side by side are no neighbours
 };
 
 /// Chart number of each triangle, from 0: triangles are of one chart when they share a vertex or a place in
@@ -59,10 +63,12 @@ class TexelMap {
   std::span<const TexelFragment> fragments(std::size_t texel) const {
     return {fragments_.data() + first_[texel], fragments_.data() + first_[texel + 1]};
   }
-  /// Exact, from the clipped triangles. The texel must hold some.
+  /// Exact, from the clipped triangles. The texel must hold some and not be a vertex's.
   TexelCover coverOf(std::size_t texel) const;
   /// A point spread evenly over the texel's covered area for (u, v, w) in [0, 1)^3. The texel must hold some.
   MeshPoint pointOn(std::size_t texel, float u, float v, float w) const;
+  /// Of a mesh lit by vertex: of the vertex at mesh.indices[corner].
+  std::uint32_t vertexTexel(std::size_t object, std::size_t corner) const;
   /// The texel that a point of a charted mesh lies in.
   std::size_t texelAt(const core::Vec2& lightmapUv) const;
   /// A layer for backs is needed.
@@ -77,6 +83,8 @@ class TexelMap {
   };
   void findCharts();
   std::vector<Placed> placeFragments() const;
+  void placeByVertex(std::size_t object, std::size_t triangle, double area, std::vector<Placed>& out) const;
+  MeshPoint pointByVertex(const TexelFragment& part, std::size_t texel, float v, float w) const;
   CellPolygon clipped(const TexelFragment& fragment, std::size_t texel) const;
   void cover();
 

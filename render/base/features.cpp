@@ -33,11 +33,15 @@ struct NamedFeature {
   Feature feature;
   const char* macro;
 };
-constexpr std::array kMacros{
-    NamedFeature{kLightmap, "LIGHTMAP"},    NamedFeature{kBackLayer, "BACK_LAYER"},
-    NamedFeature{kMapDetail, "MAP_DETAIL"}, NamedFeature{kVertexColor, "VERTEX_COLOR"},
-    NamedFeature{kEmission, "EMISSION"},    NamedFeature{kFrontEmission, "FRONT_EMISSION"},
-    NamedFeature{kAlphaMask, "ALPHA_MASK"}, NamedFeature{kBlend, "BLEND"}};
+constexpr std::array kMacros{NamedFeature{kLightmap, "LIGHTMAP"},
+                             NamedFeature{kBackLayer, "BACK_LAYER"},
+                             NamedFeature{kMapDetail, "MAP_DETAIL"},
+                             NamedFeature{kVertexLight, "VERTEX_LIGHT"},
+                             NamedFeature{kVertexColor, "VERTEX_COLOR"},
+                             NamedFeature{kEmission, "EMISSION"},
+                             NamedFeature{kFrontEmission, "FRONT_EMISSION"},
+                             NamedFeature{kAlphaMask, "ALPHA_MASK"},
+                             NamedFeature{kBlend, "BLEND"}};
 
 std::string header(Features features) {
   std::string text = "#version 330 core\n";
@@ -68,7 +72,18 @@ uniform mat4 meshToClip;
 #ifdef LIGHTMAP
 layout(location = 1) in vec2 lightmapUvIn;
 uniform vec4 lightmapPlace;  // core::placeInAtlas
+#ifdef VERTEX_LIGHT
+uniform sampler2DArray maps;
+#ifdef MAP_DETAIL
+uniform usampler2D mapBlocks;
+#endif
+out vec3 frontIrradiance;
+#ifdef BACK_LAYER
+out vec3 backIrradiance;
+#endif
+#else
 out vec2 lightmapUv;
+#endif
 #endif
 #ifdef UV0
 layout(location = 2) in vec2 uv0In;
@@ -85,7 +100,20 @@ out vec4 color;
 void main() {
   gl_Position = meshToClip * vec4(positionIn, 1.0);
 #ifdef LIGHTMAP
-  lightmapUv = lightmapUvIn * lightmapPlace.xy + lightmapPlace.zw;
+  vec2 place = lightmapUvIn * lightmapPlace.xy + lightmapPlace.zw;
+#ifdef VERTEX_LIGHT
+#ifdef MAP_DETAIL
+  ivec2 texel = ivec2(place * vec2(textureSize(mapBlocks, 0)));  // of the atlas, the upper rows of `maps`
+#else
+  ivec2 texel = ivec2(place * vec2(textureSize(maps, 0).xy));
+#endif
+  frontIrradiance = texelFetch(maps, ivec3(texel, 0), 0).rgb;
+#ifdef BACK_LAYER
+  backIrradiance = texelFetch(maps, ivec3(texel, 1), 0).rgb;
+#endif
+#else
+  lightmapUv = place;
+#endif
 #endif
 #ifdef UV0
   uv0 = uv0In;
@@ -102,11 +130,16 @@ void main() {
 constexpr const char* kFragmentBody = R"(
 out vec4 radianceAndId;
 uniform vec4 surface[3];  // SurfaceConstants
-#ifdef LIGHTMAP
+#ifdef VERTEX_LIGHT
+in vec3 frontIrradiance;
+#ifdef BACK_LAYER
+in vec3 backIrradiance;
+#endif
+#elif defined(LIGHTMAP)
 in vec2 lightmapUv;
 uniform sampler2DArray maps;
 #endif
-#ifdef MAP_DETAIL
+#if defined(MAP_DETAIL) && !defined(VERTEX_LIGHT)
 uniform usampler2D mapBlocks;
 // core/map_detail.h, in coordinates of the texture that holds atlas and detail (MapTextures).
 vec2 mapPlace() {
@@ -152,7 +185,13 @@ void main() {
 #ifdef TRANSMISSION_TEXTURE
   radiance *= 1.0 - surface[2].y * texture(transmissionTexture, TRANSMISSION_UV).r;
 #endif
-#ifdef LIGHTMAP
+#ifdef VERTEX_LIGHT
+#ifdef BACK_LAYER
+  radiance *= gl_FrontFacing ? frontIrradiance : backIrradiance;
+#else
+  radiance *= frontIrradiance;
+#endif
+#elif defined(LIGHTMAP)
 #ifdef BACK_LAYER
   float layer = gl_FrontFacing ? 0.0 : 1.0;
 #else
@@ -197,6 +236,7 @@ Features featuresOf(const core::Scene& scene, const core::Object& object) {
   }
   if (diffuse && !m.unlit) {
     if (!mesh.lightmapUv.empty()) f |= m.doubleSided ? kLightmap | kBackLayer : kLightmap;
+    if (mesh.vertexLit) f |= kVertexLight;
     if (m.metallic != 0) addTexture(f, mesh, m, kMetallicUnit);
     if (m.transmission != 0) addTexture(f, mesh, m, kTransmissionUnit);
   }

@@ -32,7 +32,8 @@ enum Feature : std::uint32_t {
   kMetallicTransform = 1u << 16,
   kTransmissionTransform = 1u << 17,
   kEmissionTransform = 1u << 18,
-  kMapDetail = 1u << 19  ///< texels of the maps may have blocks of finer ones
+  kMapDetail = 1u << 19,   ///< texels of the maps may have blocks of finer ones
+  kVertexLight = 1u << 20  ///< irradiance is read by vertex (core::Mesh::vertexLit)
 };
 using Features = std::uint32_t;
 
@@ -88,7 +89,7 @@ Features featuresOf(const core::Scene& scene, const core::Object& object);
 SurfaceConstants constantsOf(const core::Scene& scene, const core::Object& object);
 
 /// The same without maps: constant irradiance pi.
-inline Features withoutMaps(Features f) { return f & ~(kLightmap | kBackLayer); }
+inline Features withoutMaps(Features f) { return f & ~(kLightmap | kBackLayer | kVertexLight); }
 /// The same with maps of one layer.
 inline Features withoutBackLayer(Features f) { return f & ~kBackLayer; }
 /// The same with maps that have detail.

@@ -2,6 +2,7 @@
 // in which a material's textures and coverage may be read: else corrections would be wrong by the difference.
 #include <cmath>
 
+#include "core/math/half.h"
 #include "raytrace/surface.h"
 #include "raytrace/world.h"
 #include "render/base/base_renderer.h"
@@ -40,7 +41,7 @@ struct Case {
   core::AlphaMode alphaMode = core::AlphaMode::opaque;
   int uvSet = 0;
   bool transformed = false, colored = false, unlit = false, doubleSided = false, behind = false, ward = false,
-       layered = false;
+       layered = false, vertexLit = false;
 };
 
 core::TextureSlot slotOf(const Case& c, int texture) {
@@ -87,7 +88,9 @@ core::Scene sceneOf(const Case& c) {
   core::Scene scene = c.behind ? tests::oneQuadFromBehind(materialOf(c)) : tests::oneQuad(materialOf(c), 1);
   for (int i = 0; i < 4; ++i) scene.textures.push_back(patches(static_cast<std::uint8_t>(i), i < 2));
   core::Mesh& mesh = scene.meshes[0];
+  mesh.vertexLit = c.vertexLit;
   for (std::size_t v = 0; v < mesh.uv1.size(); ++v) {
+    if (c.vertexLit) mesh.lightmapUv[v] = (Vec2(static_cast<float>(v), 1) + 0.5f) / Vec2(5, 3);
     mesh.uv1[v] = Vec2(0.9f, 0.8f) - 0.6f * mesh.uv0[v];
     const auto shade = static_cast<float>(v);
     if (c.colored) mesh.colors.emplace_back(0.2f + 0.2f * shade, 1 - 0.25f * shade, 0.5f, 1 - 0.15f * shade);
@@ -127,16 +130,33 @@ int expectAgreement(const core::Scene& scene, const core::IlluminationMaps& maps
   return compared;
 }
 
-/// Pixels compared.
-int expectAgreement(const Case& c) {
-  return expectAgreement(sceneOf(c), tests::constantMaps({Vec3(2, 3, 4), Vec3(5, 1, 0.5f)}), kSide);
+core::IlluminationMaps mapsOf(const Case& c) {
+  core::IlluminationMaps maps = tests::constantMaps({Vec3(2, 3, 4), Vec3(5, 1, 0.5f)});
+  if (!c.vertexLit) return maps;
+  // Vertex v of the quad has texel (v, 1) of its own; every number there differs.
+  for (std::size_t i = 0; i < maps.texels.size(); ++i)
+    maps.texels[i] = core::toHalf(1 + 0.02f * static_cast<float>(i * 7 % 90));
+  return maps;
 }
+
+/// A block for the texel (0, 0) alone.
+core::IlluminationMaps withDetail(core::IlluminationMaps maps) {
+  maps.detail.height = 4;
+  maps.detail.blocks.assign(static_cast<std::size_t>(maps.width) * maps.height, 0);
+  maps.detail.blocks[0] = core::MapBlock{1, 1, 1, 1}.packed();
+  maps.detail.texels.assign(std::size_t{3} * maps.width * maps.detail.height * maps.layers, core::toHalf(9));
+  return maps;
+}
+
+/// Pixels compared.
+int expectAgreement(const Case& c) { return expectAgreement(sceneOf(c), mapsOf(c), kSide); }
 
 std::string describe(const Case& c) {
   return "alpha mode " + std::to_string(static_cast<int>(c.alphaMode)) + ", uv set " +
          std::to_string(c.uvSet) + (c.transformed ? ", transformed" : "") + (c.colored ? ", colours" : "") +
          (c.unlit ? ", unlit" : "") + (c.doubleSided ? ", double-sided" : "") +
-         (c.behind ? ", from behind" : "") + (c.ward ? ", Ward" : "") + (c.layered ? ", coat and sheen" : "");
+         (c.behind ? ", from behind" : "") + (c.ward ? ", Ward" : "") +
+         (c.layered ? ", coat and sheen" : "") + (c.vertexLit ? ", lit by vertex" : "");
 }
 
 TEST(BaseAgreement, EveryAlphaModeUvSetTransformAndColour) {
@@ -181,6 +201,18 @@ TEST(BaseAgreement, DetailOfTheMapsInBlocksOfEverySide) {
       const core::Scene scene = behind ? tests::oneQuadFromBehind(material) : tests::oneQuad(material);
       EXPECT_GT(expectAgreement(scene, maps, 4 * kSide), kSide * kSide);
     }
+  }
+}
+
+TEST(BaseAgreement, LightByVertexOnBothSides) {
+  for (const auto& [behind, doubleSided] : {std::pair(false, false), {false, true}, {true, true}}) {
+    Case c;
+    c.vertexLit = true;
+    c.behind = behind;
+    c.doubleSided = doubleSided;
+    SCOPED_TRACE(describe(c));
+    EXPECT_GT(expectAgreement(c), kSide * kSide / 8);
+    EXPECT_GT(expectAgreement(sceneOf(c), withDetail(mapsOf(c)), kSide), kSide * kSide / 8);
   }
 }
 

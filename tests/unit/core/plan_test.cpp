@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/load.h"
+#include "core/scene/median_edge.h"
 #include "core/scene/specular_albedo.h"
 #include "tests/unit/core/scene_shapes.h"
 
@@ -84,6 +85,35 @@ TEST(Plan, LightmapStaysWithinItsMemoryAndSaysSo) {
       EXPECT_NE(reason.find(std::to_string(plan.lightmapSize)), std::string::npos) << reason;
     }
   }
+}
+
+TEST(Plan, LightByVertexWantsManyVerticesAndShortEdges) {
+  Scene scene = sceneOf({lambert(), lamp()});
+  EXPECT_FALSE(line(makePlan(scene), "light by vertex").on);
+  Mesh grid;
+  constexpr std::uint32_t kSide = 40;
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      grid.positions.emplace_back(1e-3f * static_cast<float>(x), 1e-3f * static_cast<float>(y), 0);
+      const std::uint32_t v = y * kSide + x;
+      if (x > 0 && y > 0) grid.indices.insert(grid.indices.end(), {v, v - 1, v - kSide});
+    }
+  }
+  EXPECT_NEAR(medianEdge(grid), 1e-3, 1e-6);
+  Object object;
+  scene.add(std::move(object), std::move(grid));
+  EXPECT_EQ(makePlan(scene).denseMeshes, 1u);
+  EXPECT_TRUE(line(makePlan(scene), "light by vertex").on);
+  for (Vec3& p : scene.meshes.back().positions) p *= 1000.0f;  // coarse: edges of a metre
+  EXPECT_EQ(makePlan(scene).denseMeshes, 0u);
+}
+
+TEST(MedianEdge, OfAThreeFourFiveTriangle) {
+  Mesh mesh;
+  mesh.positions = {Vec3(0), Vec3(3, 0, 0), Vec3(0, 4, 0)};
+  mesh.indices = {0, 1, 2};
+  EXPECT_DOUBLE_EQ(medianEdge(mesh), 4);
+  EXPECT_EQ(medianEdge({}), 0);
 }
 
 TEST(Plan, EnergyLeftOutIsTheAreaWeightedMean) {
