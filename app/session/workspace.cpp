@@ -180,6 +180,7 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
   bakeOptions.quality = options.quality;
   bakeOptions.photons = options.photons;
   bakeOptions.seed = bake.seed;
+  bakeOptions.detailTexels = raytrace::detailTexelsOf(options.quality, w.plan, atlas.size);
   bakeOptions.threads = bake.threads;
   raytrace::ImportedLight imported;
   if (!bake.importFolder.empty()) {

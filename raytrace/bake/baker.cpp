@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <glm/gtc/packing.hpp>
 #include <utility>
 
 #include "core/content_hash.h"
 #include "core/error.h"
 #include "raytrace/bake/density.h"
 #include "raytrace/bake/gutters.h"
+#include "raytrace/bake/map_half.h"
 #include "raytrace/bake/seams.h"
 #include "raytrace/lights.h"
 
 namespace saccade::raytrace {
 namespace {
 
-constexpr float kLargestHalf = 65504;
 // Direct light has small errors and sharp edges: it is smoothed where its samples leave no doubt, and little.
 constexpr float kDirectError = 0.08f;  // standard error times the root of the samples, for refinement
 constexpr float kDirectConfidence = 0.4f;
@@ -35,16 +34,17 @@ struct Preset {
   /// Of the smoothing of gathered light: the more evenly rays lie, the more their spread overstates the
   /// error.
   float gatherConfidence;
+  double detailError;  ///< of direct light, that finer texels at shadows' edges are to keep
 };
 // High is what keeps the errors of known scenes (bake_truth_test.cpp) below half a percent.
-constexpr Preset kPresets[] = {{"preview", 1 << 18, 0, 4, 0, 0},
-                               {"medium", 1 << 22, 240, 16, 8, 1.5f},
-                               {"high", 1 << 23, 240, 64, 128, 0.7f}};
+constexpr Preset kPresets[] = {{"preview", 1 << 18, 0, 4, 0, 0, 0.05},
+                               {"medium", 1 << 22, 240, 16, 32, 1.5f, 0.02},
+                               {"high", 1 << 23, 240, 64, 128, 0.7f, 0.008}};
 
 using Clock = std::chrono::steady_clock;
 // Shares of a bake's time, measured in the bundled scenes; only the guess until a stage's own pace is known.
 constexpr double kOpenWeight = 0.03, kParticleWeight = 0.2, kDirectWeight = 0.3, kGatherWeight = 0.45,
-                 kFinishWeight = 0.02;
+                 kProbeWeight = 0.1, kDetailWeight = 0.2, kFinishWeight = 0.02;
 constexpr std::uint64_t kPaceShare = 50;  // a 50th of a stage is done first, to learn its pace
 
 const Preset& presetOf(const std::string& quality) {
@@ -54,15 +54,11 @@ const Preset& presetOf(const std::string& quality) {
   throw core::UsageError("unknown quality '" + quality + "': use preview, medium or high");
 }
 
-std::uint16_t toHalf(float value) {
-  return glm::packHalf1x16(std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargestHalf));
-}
-
 /// Appends one layer's texels, and counts what halves cannot hold.
 void storeHalves(const TexelMap& texels, const std::vector<Vec3>& irradiance, core::IlluminationMaps& maps) {
   for (std::size_t i = 0; i < irradiance.size(); ++i) {
     const Vec3 e = irradiance[i];
-    for (int c = 0; c < 3; ++c) maps.texels.push_back(toHalf(e[c]));
+    for (int c = 0; c < 3; ++c) maps.texels.push_back(mapHalf(e[c]));
     const Vec3 over = glm::max(e - kLargestHalf, Vec3(0));
     if (texels.area(i) == 0 || over == Vec3(0)) continue;  // gutters repeat others
     ++maps.clampedTexels;
@@ -138,7 +134,8 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
       open_(texels_, layers_),
       gatherRays_(presetOf(options.quality).gatherRays),
       particles_(world, texels_.texelCount(), layers_),
-      direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())) {
+      direct_(static_cast<std::size_t>(layers_), std::vector<DirectEstimate>(texels_.texelCount())),
+      detail_(world, texels_, open_, layers_, {presetOf(options.quality).detailError, options.detailTexels}) {
   const Preset& preset = presetOf(options.quality);
   if (options_.photons == 0) options_.photons = preset.photons;
   const auto share = static_cast<std::uint64_t>(preset.causticShare);
@@ -151,6 +148,10 @@ BakeJob::BakeJob(const World& world, int atlasSize, const BakeOptions& options)
   for (int layer = 0; layer < layers_; ++layer) addOpenArea(layer);
   addParticles();
   for (int layer = 0; layer < layers_; ++layer) addDirect(layer);
+  if (options_.detailTexels > 0) {
+    addEdgeProbes();
+    addDetail();
+  }
   for (int layer = 0; layer < layers_ && gatherRays_ > 0; ++layer) addGather(layer);
 }
 
@@ -181,13 +182,19 @@ void BakeJob::addParticles() {
   stages_.push_back(std::move(stage));
 }
 
-void BakeJob::addDirect(int layer) {
+DirectOptions BakeJob::directOptions() const {
   DirectOptions direct;
   direct.samples = presetOf(options_.quality).directSamples;
   direct.relativeError = kDirectError / std::sqrt(static_cast<float>(direct.samples));
+  if (options_.quality != "high") direct.wholePoints = direct.samples;
   direct.seed = options_.seed;
   direct.threads = options_.threads;
   if (options_.kept) direct.keptCharts = &options_.kept->keep;
+  return direct;
+}
+
+void BakeJob::addDirect(int layer) {
+  const DirectOptions direct = directOptions();
   BakeStage stage;
   stage.name = layer == 0 ? "direct light" : "direct light on backs";
   stage.units = allBlocks(texels_.texelCount()).last;
@@ -222,6 +229,42 @@ void BakeJob::addGather(int layer) {
   stages_.push_back(std::move(stage));
 }
 
+std::vector<LayerLight> BakeJob::directLayers() {
+  std::vector<LayerLight> layers;
+  for (int layer = 0; layer < layers_; ++layer)
+    layers.push_back({direct_[static_cast<std::size_t>(layer)], open_.areas(layer)});
+  return layers;
+}
+
+void BakeJob::addEdgeProbes() {
+  BakeStage stage;
+  stage.name = "finding edges";
+  stage.units = world_.lights().empty() ? 0 : allBlocks(texels_.texelCount()).last;
+  stage.weight = kProbeWeight;
+  stage.independent = false;
+  stage.results = bytesOf(detail_.probes());
+  stage.work = [this](std::uint64_t first, std::uint64_t last,
+                      const core::Progress& progress) -> std::uint64_t {
+    return detail_.probe(directLayers(), directOptions(), {first, last}, progress);
+  };
+  stages_.push_back(std::move(stage));
+}
+
+void BakeJob::addDetail() {
+  BakeStage stage;
+  stage.name = "edges of light";
+  stage.units = world_.lights().empty() ? 0 : DetailLight::kPieces;
+  stage.weight = kDetailWeight;
+  stage.independent = false;
+  stage.results = bytesOf(detail_.cells());
+  stage.work = [this](std::uint64_t first, std::uint64_t last,
+                      const core::Progress& progress) -> std::uint64_t {
+    detail_.plan(directLayers(), options_.imported);
+    return detail_.trace(first, last, directOptions(), progress);
+  };
+  stages_.push_back(std::move(stage));
+}
+
 bool BakeJob::advance(const std::stop_token& pause, const BakeReport& report) {
   for (BakeStage& stage : stages_)
     if (stage.independent && !run(stage, stage.units / kPaceShare, pause, report)) return false;
@@ -235,6 +278,7 @@ std::uint64_t BakeJob::settingsHash() const {
   hash.add(options_.quality);
   hash.add(options_.photons);
   hash.add(options_.seed);
+  hash.add(static_cast<std::uint64_t>(options_.detailTexels));
   hash.add(texels_.size());
   for (const core::Mesh& mesh : world_.scene().meshes) {
     hash.add(mesh.vertexLit);
@@ -342,7 +386,7 @@ void BakeJob::takeKept(int layer, std::span<Vec3> irradiance) const {
   }
 }
 
-std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress) {
+BakeJob::FinishedLayer BakeJob::finishLayer(int layer, const core::Progress& progress) {
   const auto index = static_cast<std::size_t>(layer);
   const std::vector<DensityEstimate> direct =
       smooth(texels_, open_.areas(layer), direct_[index], smoothingOfDirect(), options_.threads,
@@ -353,16 +397,20 @@ std::vector<Vec3> BakeJob::finishLayer(int layer, const core::Progress& progress
                        : smooth(texels_, open_.areas(layer), gathered_[index],
                                 smoothingOfGathered(presetOf(options_.quality).gatherConfidence),
                                 options_.threads, part(progress, 0.6, 1));
-  std::vector<Vec3> irradiance(texels_.texelCount());
-  for (std::size_t i = 0; i < irradiance.size(); ++i)
-    irradiance[i] = direct[i].irradiance + caustic[i].irradiance + indirect[i].irradiance;
+  FinishedLayer out;
+  std::vector<Vec3>& irradiance = out.irradiance;
+  for (std::size_t i = 0; i < texels_.texelCount(); ++i) {
+    out.indirect.push_back(caustic[i].irradiance + indirect[i].irradiance);
+    irradiance.push_back(direct[i].irradiance + out.indirect[i]);
+  }
+  fillGutters(texels_, out.indirect);
   if (options_.imported)
     importIrradiance(texels_, world_.scene(), *options_.imported, options_.threads, irradiance);
   takeKept(layer, irradiance);
   fillGutters(texels_, irradiance);
   stitchSeams(findSeams(texels_), texels_.size(), layer == 1, irradiance);
   takeKept(layer, irradiance);  // border texels that were moved to their centres once are not moved again
-  return irradiance;
+  return out;
 }
 
 core::IlluminationMaps BakeJob::finish(core::SceneCharts charts, const std::stop_token& stop,
@@ -374,6 +422,7 @@ core::IlluminationMaps BakeJob::finish(core::SceneCharts charts, const std::stop
   maps.quality = options_.quality;
   maps.photons = options_.photons;
   maps.texels.reserve(texels_.texelCount() * 3 * static_cast<std::size_t>(layers_));
+  std::vector<std::vector<Vec3>> irradiance, indirect;  // by layer
   for (int layer = 0; layer < layers_; ++layer) {
     core::Progress progress{{}, stop};
     if (report) {
@@ -381,8 +430,13 @@ core::IlluminationMaps BakeJob::finish(core::SceneCharts charts, const std::stop
         report(progressAt({nullptr, 0, 0, (layer + fraction) / layers_}, "smoothing"));
       };
     }
-    storeHalves(texels_, finishLayer(layer, progress), maps);
+    FinishedLayer finished = finishLayer(layer, progress);
+    storeHalves(texels_, finished.irradiance, maps);
+    irradiance.push_back(std::move(finished.irradiance));
+    indirect.push_back(std::move(finished.indirect));
   }
+  detail_.plan(directLayers(), options_.imported);
+  maps.detail = detail_.finish(indirect, irradiance, options_.kept);
   return maps;
 }
 

@@ -18,6 +18,7 @@
 #include "core/progress.h"
 #include "raytrace/bake/bake_stage.h"
 #include "raytrace/bake/density.h"
+#include "raytrace/bake/detail.h"
 #include "raytrace/bake/direct.h"
 #include "raytrace/bake/gather.h"
 #include "raytrace/bake/imported_light.h"
@@ -33,6 +34,7 @@ struct BakeOptions {
   std::string quality = "medium";  ///< preview, medium or high
   std::uint64_t photons = 0;       ///< particles; 0 = as the quality says
   std::uint32_t seed = 1;
+  std::size_t detailTexels = 0;             ///< most texels of blocks (core::MapDetail), a layer; 0: none
   int threads = 0;                          ///< 0 = all on the calling thread; the maps do not depend on it
   const ImportedLight* imported = nullptr;  ///< replaces what is baked for some objects; null: none
   const KeptCharts* kept = nullptr;         ///< charts that keep the texels of an earlier bake; null: none
@@ -84,7 +86,11 @@ class BakeJob {
   void addOpenArea(int layer);
   void addParticles();
   void addDirect(int layer);
+  DirectOptions directOptions() const;
   void addGather(int layer);
+  std::vector<LayerLight> directLayers();
+  void addEdgeProbes();
+  void addDetail();
   /// Works on one stage up to `last`; false when paused.
   bool run(BakeStage& stage, std::uint64_t last, const std::stop_token& pause, const BakeReport& report);
   BakeProgress progressAt(const Pace& now, std::string_view stage);
@@ -95,7 +101,11 @@ class BakeJob {
   void findSource(const core::Progress& progress);
   /// Overwrites kept charts' texels by those of the earlier bake.
   void takeKept(int layer, std::span<Vec3> irradiance) const;
-  std::vector<Vec3> finishLayer(int layer, const core::Progress& progress);
+  /// What a layer shows, gutters filled, and what of that is not direct light.
+  struct FinishedLayer {
+    std::vector<Vec3> irradiance, indirect;
+  };
+  FinishedLayer finishLayer(int layer, const core::Progress& progress);
 
   const World& world_;
   BakeOptions options_;
@@ -107,6 +117,7 @@ class BakeJob {
   ParticleState particles_;
   std::vector<std::vector<DirectEstimate>> direct_, gathered_;  ///< by layer
   TexelLight source_;                                           ///< what gather rays look up, once found
+  DetailLight detail_;
   std::vector<BakeStage> stages_;
   double fraction_ = 0;  ///< as reported last
 };

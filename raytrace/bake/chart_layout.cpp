@@ -40,13 +40,15 @@ double unitOf(const core::Object& object) {
 
 }  // namespace
 
-ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels, VertexLight vertexLight)
+ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels, VertexLight vertexLight,
+                         double withBlocks)
     : scene_(scene),
       charts_(scene.meshes.size()),
       chartOfTriangle_(scene.meshes.size()),
       own_(scene.meshes.size()),
       vertices_(scene.meshes.size()),
       mostTexels_(mostTexels),
+      withBlocks_(std::max(mostTexels, withBlocks)),
       vertexLight_(vertexLight) {
   shareTexels(mostTexels);
   std::vector<std::size_t> blockOf(scene.meshes.size(), kNone);
@@ -134,7 +136,8 @@ bool ChartLayout::lightByVertex(std::uint32_t m, const std::vector<Chart>& clust
   const core::Mesh& mesh = scene_.meshes[m];
   if (vertexLight_ == VertexLight::never || mesh.instanced || !(shares_[m] > 0)) return false;
   if (mesh.positions.size() < core::kDenseVertices) return false;
-  const double area = areaOf(mesh), texel = std::sqrt(kOfAtlas * area / shares_[m]);  // of all, evenly
+  const double area = areaOf(mesh);
+  const double texel = std::sqrt(kOfAtlas * area / shares_[m] * mostTexels_ / withBlocks_);  // of all, evenly
   if (!(texel > 0)) return false;
   double charts = 0;
   for (const Chart& c : clusters) {

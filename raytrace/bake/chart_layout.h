@@ -33,13 +33,13 @@ class ChartLayout {
   /// it is, one rectangle that holds all charts of its mesh. `mostTexels`: that the atlas may have; to keep
   /// their gutters, meshes take up to half of it, each by its surface.
   ///
-  /// A mesh keeps its light by vertex where that pays. It has core::kDenseVertices or more, and with
-  /// `mostTexels` spread evenly its edges are mostly shorter than texels, and its charts fall to pieces: with
-  /// borders they take half as many texels again as its surface would, and it has at most twice as many
-  /// vertices. Such meshes take at most half of the atlas. Instanced meshes do not: their objects' blocks
-  /// differ in scale.
+  /// A mesh keeps its light by vertex where that pays. It has core::kDenseVertices or more, and with all
+  /// texels (`withBlocks`, at least mostTexels: those of detail blocks too) spread evenly its edges are
+  /// mostly shorter than texels, and its charts fall to pieces: with borders they take half as many texels
+  /// again as its surface would, and it has at most twice as many vertices. Such meshes take at most half of
+  /// the atlas. Instanced meshes do not: their objects' blocks differ in scale.
   explicit ChartLayout(const core::Scene& scene, double mostTexels = 1 << 20,
-                       VertexLight vertexLight = VertexLight::never);
+                       VertexLight vertexLight = VertexLight::never, double withBlocks = 0);
 
   std::size_t chartCount() const { return count_ + (shared_ ? 1 : 0); }
   /// Of meshes that show irradiance.
@@ -105,7 +105,7 @@ class ChartLayout {
   std::vector<OwnAtlas> own_;                                ///< by mesh
   std::vector<VertexTexels> vertices_;                       ///< by mesh; empty: not lit by vertex
   std::vector<double> shares_;                               ///< by mesh: texels that an own atlas may take
-  double mostTexels_;
+  double mostTexels_, withBlocks_;
   VertexLight vertexLight_;
   std::size_t vertexLitMeshes_ = 0;
   double vertexTexelCount_ = 0;  ///< of their rectangles

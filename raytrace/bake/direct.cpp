@@ -20,8 +20,13 @@ constexpr std::uint32_t kMostTries = 8;
 constexpr std::uint32_t kDirectStream = 0x64697265u;
 
 /// The point of the texel's covered area for u in [0, 1)^2, which it takes evenly: a (0, 2)-sequence stays
-/// one, whatever triangles the texel holds.
-MeshPoint pointOf(const TexelMap& texels, std::size_t texel, const Vec2& u) {
+/// one, whatever triangles the texel holds. In a cell of a texel u is the place; none where no surface is.
+std::optional<MeshPoint> pointOf(const TexelMap& texels, std::size_t texel, const TexelCell& cell,
+                                 const Vec2& u) {
+  if (!cell.whole()) {
+    const Plane2 place = (Plane2(cell.x, cell.y) + Plane2(u)) / Plane2(cell.columns, cell.rows);
+    return texels.pointAt(texel, texels.cornerOf(texel) + place);
+  }
   const std::span<const TexelFragment> parts = texels.fragments(texel);
   float below = 0, target = u.x * texels.area(texel);
   std::size_t i = 0;
@@ -34,16 +39,18 @@ MeshPoint pointOf(const TexelMap& texels, std::size_t texel, const Vec2& u) {
 /// Estimates one texel from more and more samples.
 class Integrator {
  public:
-  Integrator(const World& world, const FewLamps* few, const TexelMap& texels, std::size_t texel, int layer,
-             std::uint32_t seed, RayCounters& counters)
+  Integrator(const World& world, const FewLamps* few, const TexelMap& texels, std::size_t texel,
+             const TexelCell& cell, int layer, const DirectOptions& options, RayCounters& counters)
       : world_(world),
         few_(few),
         texels_(texels),
         texel_(texel),
+        cell_(cell),
         front_(layer == 0),
-        reach_(OpenArea::reach(texels, texel)),
-        stream_(kDirectStream + static_cast<std::uint32_t>(layer)),
-        seed_(seed),
+        reach_(OpenArea::reach(texels, texel) / std::sqrt(static_cast<float>(cell.columns * cell.rows))),
+        wholePoints_(options.wholePoints),
+        stream_(streamOf(options.alike ? TexelCell() : cell, layer)),
+        seed_(options.seed),
         counters_(counters) {}
 
   void run(std::uint32_t until) {
@@ -54,6 +61,9 @@ class Integrator {
   void leaveOutCovered(bool on) { leaveOut_ = on; }
   /// None was left out so far.
   bool allOpen() const { return tried_ == count_; }
+  /// The points found so far.
+  bool anySurface() const { return surface_; }
+  bool anyOpen() const { return count_ > 0; }
 
   struct Result {
     DirectEstimate estimate;
@@ -71,16 +81,24 @@ class Integrator {
   }
 
  private:
+  static std::uint32_t streamOf(const TexelCell& cell, int layer) {
+    const int number = cell.whole() ? 0 : ((cell.columns + cell.x) << 16) + ((cell.rows + cell.y) << 1);
+    return kDirectStream + static_cast<std::uint32_t>(number + layer);
+  }
+
   /// A point of the texel, shadow rays to the lights and, for what they find badly, a ray by the cosine.
   void sample() {
     core::PixelSampler random(static_cast<std::uint32_t>(texel_), stream_, tried_++, seed_);
-    const Receiver at(world_, pointOf(texels_, texel_, random.next2D()), front_);
+    const std::optional<MeshPoint> point = pointOf(texels_, texel_, cell_, random.next2D());
+    if (!point) return;
+    surface_ = true;
+    const Receiver at(world_, *point, front_);
     if (leaveOut_ && isCovered(world_, at.surface, reach_, counters_)) return;
     const float uLight = random.next1D();
     const Vec2 u = random.next2D();
     const EnvironmentLight* environment = world_.lights().environment();
     Vec3 sum(0);
-    if (few_) few_->sample(at, uLight, u, counters_, tally_);
+    if (few_) few_->sample(at, uLight, u, wholePoints_, counters_, tally_);
     const LightChoice choice = few_ ? LightChoice() : world_.lights().choose(at.surface.position);
     if (!few_) sum += sampleLights(world_, at, choice, uLight, u, counters_);
     if (environment) sum += sampleEnvironment(world_, at, *environment, random.next2D(), counters_);
@@ -96,9 +114,12 @@ class Integrator {
   const FewLamps* few_;  ///< null: lamps are many
   const TexelMap& texels_;
   std::size_t texel_;
+  TexelCell cell_;
   bool front_;
   float reach_;  ///< of what covers points, m
+  int wholePoints_;
   bool leaveOut_ = false;
+  bool surface_ = false;
   std::uint32_t stream_, seed_;
   RayCounters& counters_;
   std::uint32_t tried_ = 0, count_ = 0;
@@ -108,23 +129,24 @@ class Integrator {
 };
 
 /// `cut`: the texel is known to be covered in part.
-DirectEstimate integrateTexel(const Integrator& fresh, bool cut, const DirectOptions& options) {
+CellLight integrate(const Integrator& fresh, bool cut, const DirectOptions& options) {
   std::optional<Integrator> texel(fresh);
   texel->leaveOutCovered(cut);
   auto count = static_cast<std::uint32_t>(options.samples);
   const std::uint32_t most = count * static_cast<std::uint32_t>(options.refinement);
   while (true) {
     texel->run(count);
+    if (!texel->anyOpen()) return {texel->anySurface(), false, {}};
     const Integrator::Result result = texel->result();
     const double tolerated = options.relativeError * result.scale;
-    if (result.estimate.variance <= tolerated * tolerated) return result.estimate;
+    if (result.estimate.variance <= tolerated * tolerated) return {true, true, result.estimate};
     if (!cut) {  // its open area was probed at few points: look again
       cut = true;
       texel.emplace(fresh);
       texel->leaveOutCovered(true);
       continue;
     }
-    if (count >= most) return result.estimate;
+    if (count >= most) return {true, true, result.estimate};
     texel->leaveOutCovered(!texel->allOpen());
     count = std::min(2 * count, most);
   }
@@ -132,21 +154,29 @@ DirectEstimate integrateTexel(const Integrator& fresh, bool cut, const DirectOpt
 
 }  // namespace
 
+DirectLight::DirectLight(const World& world, const TexelMap& texels, const OpenArea& open,
+                         const DirectOptions& options)
+    : world_(world), texels_(texels), open_(open), options_(options) {
+  if (FewLamps::serves(world)) few_.emplace(world);
+}
+
+CellLight DirectLight::at(std::size_t texel, int layer, const TexelCell& cell) const {
+  RayCounters own;
+  const Integrator fresh(world_, few_ ? &*few_ : nullptr, texels_, texel, cell, layer, options_,
+                         options_.counters ? *options_.counters : own);
+  return integrate(fresh, open_.areas(layer)[texel] < texels_.area(texel), options_);
+}
+
 std::size_t directIrradiance(const World& world, const TexelMap& texels, const OpenArea& open, int layer,
                              BlockRange blocks, const DirectOptions& options, const core::Progress& progress,
                              std::span<DirectEstimate> out) {
   if (world.lights().empty()) return blocks.last;
-  std::optional<FewLamps> few;
-  if (FewLamps::serves(world)) few.emplace(world);
+  const DirectLight light(world, texels, open, options);
   return parallelTexels(options.threads, blocks, texels.texelCount(), progress, [&](std::size_t texel) {
-    const float area = open.areas(layer)[texel];
-    if (!(area > 0)) return;
+    if (!(open.areas(layer)[texel] > 0)) return;
     const auto chart = static_cast<std::size_t>(texels.chartOf(texel));
     if (options.keptCharts && (*options.keptCharts)[chart]) return;
-    RayCounters own;
-    const Integrator fresh(world, few ? &*few : nullptr, texels, texel, layer, options.seed,
-                           options.counters ? *options.counters : own);
-    out[texel] = integrateTexel(fresh, area < texels.area(texel), options);
+    out[texel] = light.at(texel, layer, {}).light;
   });
 }
 

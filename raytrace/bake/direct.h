@@ -6,10 +6,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/progress.h"
+#include "raytrace/bake/few_lamps.h"
 #include "raytrace/bake/open_area.h"
 #include "raytrace/bake/parallel.h"
 #include "raytrace/bake/texel_map.h"
@@ -21,6 +24,10 @@ struct DirectOptions {
   int samples = 16;    ///< per texel and side; best a power of 2
   int refinement = 4;  ///< up to so many times as many samples where they disagree (penumbrae, shadow edges)
   float relativeError = 0.02f;  ///< standard error of the mean that a texel is refined down to
+  /// Samples of a texel that look at all lamps where lamps are few, at least; see few_lamps.h.
+  int wholePoints = std::numeric_limits<int>::max();
+  /// All cells of a texel use the same random numbers: what differs between them is their light, not noise.
+  bool alike = false;
   std::uint32_t seed = 1;
   int threads = 0;                                ///< 0 = inline
   const std::vector<char>* keptCharts = nullptr;  ///< by chart: its texels are left alone; null: none
@@ -32,6 +39,30 @@ struct DirectEstimate {
   /// Of the luminance of `irradiance`, from the spread of the samples. They lie more evenly than that takes
   /// for granted, so it is a bound on average (found: 3/4 of it); samples that agree by chance state 0.
   float variance = 0;
+};
+
+/// Direct light of a texel or a cell of one.
+struct CellLight {
+  bool surface = false;  ///< it holds some
+  bool open = false;     ///< some that nothing lies over
+  DirectEstimate light;  ///< mean over that
+};
+
+/// Direct light at one place of the atlas after another; at() from any thread. All that it is made of must
+/// outlive it.
+class DirectLight {
+ public:
+  DirectLight(const World& world, const TexelMap& texels, const OpenArea& open, const DirectOptions& options);
+
+  /// The texel must have open surface; the cell may have none.
+  CellLight at(std::size_t texel, int layer, const TexelCell& cell) const;
+
+ private:
+  const World& world_;
+  const TexelMap& texels_;
+  const OpenArea& open_;
+  DirectOptions options_;
+  std::optional<FewLamps> few_;  ///< none: lamps are many
 };
 
 /// For the texels of `blocks`: out[texel] = mean over the texel's open area of the light that arrives

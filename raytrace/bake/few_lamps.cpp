@@ -112,38 +112,75 @@ FewLamps::Way FewLamps::wayTo(const Lamp& lamp, const Receiver& at, const Vec3& 
   return way;
 }
 
-void FewLamps::sample(const Receiver& at, float uLamp, const Vec2& u, RayCounters& counters,
-                      LampTally& tally) const {
-  const Vec3 origin = at.surface.position + at.surface.ng * at.surface.offset;  // never in a lamp's own plane
+/// Looks at all lamps from the point.
+FewLamps::Draw FewLamps::drawHere(const Receiver& at, const Vec3& origin, float uLamp,
+                                  LampTally& tally) const {
   float below[kMost + 1] = {};
   for (std::size_t i = 0; i < lamps_.size(); ++i) {
     const Vec3 e = unshadowed(lamps_[i], at, origin);
     const float y = core::luminance(e);
     below[i + 1] = below[i] + y;
-    if (!(y > 0) || lamps_[i].textured) continue;
+    if (!(y > 0)) continue;
+    tally.ofLamp_[i] += y;
+    if (lamps_[i].textured) continue;
     LampTally::Group& group = tally.groups_[lamps_[i].group];
     group.unshadowed += e;
     group.squares += double{y} * y;
   }
-  ++tally.count_;
-  tally.groupCount_ = lamps_.empty() ? 0 : lamps_.back().group + 1;
+  ++tally.wholePoints_;
   const float total = below[lamps_.size()];
-  if (!(total > 0) || !std::isfinite(total)) return;
+  tally.atWholePoints_ += total;
+  tally.squaresAtWholePoints_ += double{total} * total;
+  if (!(total > 0) || !std::isfinite(total)) return {};
   const float target = std::min(uLamp, 0x1.fffffep-1f) * total;
   std::size_t drawn = 0;
   while (drawn + 1 < lamps_.size() && below[drawn + 1] <= target) ++drawn;
-  const Lamp& lamp = lamps_[drawn];
-  Way way = wayTo(lamp, at, origin, u, below[drawn + 1] - below[drawn]);
+  return {drawn, below[drawn + 1] - below[drawn], total};
+}
+
+/// Looks at one lamp only: the points of a texel see much the same.
+FewLamps::Draw FewLamps::drawAsBefore(const Receiver& at, const Vec3& origin, float uLamp,
+                                      const LampTally& tally) const {
+  double total = 0;
+  for (std::size_t i = 0; i < lamps_.size(); ++i) total += tally.ofLamp_[i];
+  if (!(total > 0) || !std::isfinite(total)) return {};
+  const double target = std::min(uLamp, 0x1.fffffep-1f) * total;
+  std::size_t drawn = 0;
+  for (double below = tally.ofLamp_[0]; drawn + 1 < lamps_.size() && below <= target;)
+    below += tally.ofLamp_[++drawn];
+  const float irradiance = core::luminance(unshadowed(lamps_[drawn], at, origin));
+  return {drawn, irradiance, irradiance * total / tally.ofLamp_[drawn]};
+}
+
+void FewLamps::sample(const Receiver& at, float uLamp, const Vec2& u, int wholePoints, RayCounters& counters,
+                      LampTally& tally) const {
+  const Vec3 origin = at.surface.position + at.surface.ng * at.surface.offset;  // never in a lamp's own plane
+  const bool whole = tally.wholePoints_ < wholePoints || !tally.wholePointsAgree();
+  const Draw draw = whole ? drawHere(at, origin, uLamp, tally) : drawAsBefore(at, origin, uLamp, tally);
+  ++tally.count_;
+  tally.groupCount_ = lamps_.empty() ? 0 : lamps_.back().group + 1;
+  tally.atAll_ += draw.weight;
+  if (!(draw.weight > 0) || !std::isfinite(draw.weight)) return;
+  const Lamp& lamp = lamps_[draw.lamp];
+  Way way = wayTo(lamp, at, origin, u, draw.irradiance);
   if (!(way.weight > 0) || !std::isfinite(way.weight)) return;
   const float free = world_.transmittance(shadowRay(origin, way.light), counters);
   if (!lamp.textured) {
-    tally.groups_[lamp.group].add(double{total} * way.weight, free);
+    tally.groups_[lamp.group].add(draw.weight * way.weight, free);
     return;
   }
   const Vec3 radiance = emissionAt(world_, lamp.triangle, way.place.x, way.place.y);
-  const Vec3 e = radiance / core::luminance(lamp.radiance) * (total * way.weight * free);
+  const Vec3 e =
+      radiance / core::luminance(lamp.radiance) * static_cast<float>(draw.weight * way.weight * free);
   tally.textured_ += e;
   tally.texturedSquares_ += double{core::luminance(e)} * core::luminance(e);
+}
+
+/// Unshadowed light hardly varies over the points so far.
+bool LampTally::wholePointsAgree() const {
+  constexpr double kEven = 0.03;  // standard deviation over mean
+  const double mean = atWholePoints_ / wholePoints_;
+  return squaresAtWholePoints_ / wholePoints_ - mean * mean <= kEven * kEven * mean * mean;
 }
 
 void LampTally::Group::add(double weight, double free) {
@@ -175,7 +212,9 @@ double LampTally::Group::shareVariance() const {
 LampTally::Result LampTally::result() const {
   Result out;
   if (count_ == 0) return out;
-  const double n = count_;
+  const double n = wholePoints_;
+  // What whole points say of each group, scaled to what all points say of their sum.
+  const double scale = atWholePoints_ > 0 ? atAll_ / count_ / (atWholePoints_ / n) : 1;
   Group rest, whole;
   for (std::size_t g = 0; g < groupCount_; ++g) {
     whole.add(groups_[g]);
@@ -186,11 +225,11 @@ LampTally::Result LampTally::result() const {
   double restUnshadowed = 0;
   for (std::size_t g = 0; g < groupCount_; ++g) {
     const Group& group = groups_[g];
-    const double unshadowed = luminance(group.unshadowed) / n;
+    const double unshadowed = scale * luminance(group.unshadowed) / n;
     if (!(unshadowed > 0)) continue;
     const bool own = group.rays >= kFewRays;
     const double share = own ? group.share() : rest.share();
-    out.irradiance += group.unshadowed * (share / n);
+    out.irradiance += group.unshadowed * (scale * share / n);
     out.unshadowed += unshadowed;
     if (own) {
       out.variance += unshadowed * unshadowed * group.shareVariance();
@@ -198,15 +237,17 @@ LampTally::Result LampTally::result() const {
       restUnshadowed += unshadowed;
     }
     // Points of a texel lie evenly: the error of a step falls as n^-3/4 and faster where light is smooth.
-    out.variance +=
-        share * share * std::max(0.0, group.squares / n - unshadowed * unshadowed) / (n * std::sqrt(n));
+    out.variance += share * share *
+                    std::max(0.0, group.squares * scale * scale / n - unshadowed * unshadowed) /
+                    (n * std::sqrt(n));
   }
   out.variance += restUnshadowed * restUnshadowed * rest.shareVariance();
-  const glm::dvec3 textured = textured_ / n;
+  const double samples = count_;
+  const glm::dvec3 textured = textured_ / samples;
   const double y = luminance(textured);
   out.irradiance += textured;
   out.unshadowed += y;
-  out.variance += std::max(0.0, texturedSquares_ / n - y * y) / n;
+  out.variance += std::max(0.0, texturedSquares_ / samples - y * y) / samples;
   return out;
 }
 

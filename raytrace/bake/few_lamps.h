@@ -31,8 +31,11 @@ class FewLamps {
   /// serves(world). The world must outlive it.
   explicit FewLamps(const World& world);
 
-  /// One sample: a shadow ray at most. uLamp in [0, 1), u in [0, 1)^2.
-  void sample(const Receiver& at, float uLamp, const Vec2& u, RayCounters& counters, LampTally& tally) const;
+  /// One sample: a shadow ray at most. uLamp in [0, 1), u in [0, 1)^2. The first `wholePoints` samples of a
+  /// tally look at all lamps; where these agree the later ones look at the drawn lamp alone, drawn by what
+  /// they found.
+  void sample(const Receiver& at, float uLamp, const Vec2& u, int wholePoints, RayCounters& counters,
+              LampTally& tally) const;
 
  private:
   struct Lamp {
@@ -52,8 +55,16 @@ class FewLamps {
     float weight = 0;  ///< near 1; 0: none
     Vec2 place{0};     ///< barycentric, of textured ones
   };
+  /// The lamp that a sample asks for, and its irradiance, all of it seen, over its probability.
+  struct Draw {
+    std::size_t lamp = 0;
+    float irradiance = 0;  ///< luminance
+    double weight = 0;     ///< 0: none
+  };
   void addEmissive();
   void addPunctual();
+  Draw drawHere(const Receiver& at, const Vec3& origin, float uLamp, LampTally& tally) const;
+  Draw drawAsBefore(const Receiver& at, const Vec3& origin, float uLamp, const LampTally& tally) const;
   Vec3 unshadowed(const Lamp& lamp, const Receiver& at, const Vec3& origin) const;
   Way wayTo(const Lamp& lamp, const Receiver& at, const Vec3& origin, const Vec2& u, float irradiance) const;
 
@@ -88,10 +99,16 @@ class LampTally {
     double shareVariance() const;
   };
   std::array<Group, FewLamps::kMost> groups_;
+  std::array<double, FewLamps::kMost> ofLamp_{};  ///< luminance, all of it seen, summed over whole points
   std::size_t groupCount_ = 0;
   glm::dvec3 textured_{0};
   double texturedSquares_ = 0;
-  int count_ = 0;
+  int count_ = 0, wholePoints_ = 0;
+  /// Luminance of all lamps, all of them seen: over whole points, and estimated over all samples.
+  double atWholePoints_ = 0, atAll_ = 0;
+  double squaresAtWholePoints_ = 0;
+
+  bool wholePointsAgree() const;
 };
 
 }  // namespace saccade::raytrace

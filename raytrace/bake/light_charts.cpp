@@ -17,10 +17,14 @@ struct Wish {
   double relativeError;
   double texels;    ///< at most, the plan's cap apart: what the time of a bake goes by
   double coarsest;  ///< of plan.coarsestTexel: indirect light wants this much everywhere
+  double detail;    ///< texels of blocks, at most
 };
-constexpr Wish kWishes[] = {
-    {"preview", 0.08, 1 << 18, 1}, {"medium", 0.02, 3 << 19, 0.5}, {"high", 0.008, 1 << 24, 0.25}};
+// Blocks are finer where light steps: the atlas itself need not be.
+constexpr Wish kWishes[] = {{"preview", 0.08, 1 << 18, 1, 0},
+                            {"medium", 0.08, 1 << 18, 0.5, 5 << 18},
+                            {"high", 0.04, 1 << 20, 0.25, 6 << 20}};
 
+constexpr double kTexelsPerChart = 64;
 constexpr int kProbeSize = 512;           // atlas side of the even charts in which light is measured
 constexpr double kProbeFill = 0.8;        // of it
 constexpr double kProbeTexels = 1 << 20;  // the middle distance of a probe: texels of an atlas of so many
@@ -85,13 +89,25 @@ VariationOptions probesOf(const ChartLayout& layout, const LightChartOptions& op
 
 }  // namespace
 
+std::size_t detailTexelsOf(const std::string& quality, const core::Plan& plan, int atlasSize) {
+  // A texel of the atlas that may have a block takes 4 bytes more than the 6 of its light.
+  constexpr double kAtlasTexel = 5.0 / 3;
+  const double left = static_cast<double>(plan.lightmapSize) * plan.lightmapSize -
+                      kAtlasTexel * atlasSize * static_cast<double>(atlasSize);
+  return static_cast<std::size_t>(std::clamp(left, 0.0, wishOf(quality).detail));
+}
+
 LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const LightChartOptions& options,
                          const core::Progress& progress) {
   const Wish& wish = wishOf(options.quality);
   const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
-  const double mostTexels = std::min(wish.texels, kMostFill * largest * largest);
+  const double mostOfPlan = kMostFill * largest * largest;
   const bool mayByVertex = options.vertexLight && plan.denseMeshes > 0;
-  ChartLayout layout(scene, mostTexels, mayByVertex ? VertexLight::whereItPays : VertexLight::never);
+  ChartLayout layout(scene, std::min(wish.texels, mostOfPlan),
+                     mayByVertex ? VertexLight::whereItPays : VertexLight::never, wish.texels + wish.detail);
+  // Many small charts are not to share one texel each.
+  const double mostTexels =
+      std::min(std::max(wish.texels, kTexelsPerChart * static_cast<double>(layout.chartCount())), mostOfPlan);
   const double even = std::max(std::sqrt(rectangleOf(layout) / kProbeFill) / kProbeSize, 1e-9);
   std::vector<double> sides(layout.items().size(), even);
   LightCharts out;
@@ -111,7 +127,10 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   goal.relativeError = wish.relativeError;
   goal.mostTexels = mostTexels;
   goal.coarsest = plan.coarsestTexel > 0 ? wish.coarsest * static_cast<double>(plan.coarsestTexel) : even;
-  goal.finest = static_cast<double>(plan.finestTexel);
+  // What blocks can do the atlas need not: a single thin chart of fine texels would empty most of it.
+  constexpr double kFinestBesideBlocks = 1.0 / 8;
+  goal.finest = std::max(static_cast<double>(plan.finestTexel),
+                         wish.detail > 0 ? goal.coarsest * kFinestBesideBlocks : 0);
   DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);
   out.relativeError = choice.relativeError;
   out.atlas.size = packWithin(layout, choice.texelMetres, largest);

@@ -17,6 +17,10 @@ struct LightChartOptions {
   bool vertexLight = true;  ///< dense meshes may keep their light by vertex (ChartLayout)
 };
 
+/// Most texels, a layer, of blocks of finer ones where light steps (BakeOptions::detailTexels): what the
+/// quality wants of what the plan leaves beside an atlas of this size. Throws core::UsageError.
+std::size_t detailTexelsOf(const std::string& quality, const core::Plan& plan, int atlasSize);
+
 struct LightCharts {
   ChartAtlas atlas;
   float finestMetres = 0, coarsestMetres = 0;  ///< texel sides chosen

@@ -108,18 +108,9 @@ Vec2 uvOf(const World& world, const MeshPoint& p) {
 }
 
 /// The point of the same chart at `uv`; none where the chart has no surface there.
-std::optional<MeshPoint> pointAt(const World& world, const TexelMap& texels, const Vec2& uv) {
+std::optional<MeshPoint> pointAt(const TexelMap& texels, const Vec2& uv) {
   if (!(uv.x > 0 && uv.x < 1 && uv.y > 0 && uv.y < 1)) return std::nullopt;
-  for (const TexelFragment& f : texels.fragments(texels.texelAt(uv))) {
-    const glm::dvec2 a = uvOf(world, {f.object, f.triangle, 0, 0}),
-                     e = glm::dvec2(uvOf(world, {f.object, f.triangle, 1, 0})) - a,
-                     g = glm::dvec2(uvOf(world, {f.object, f.triangle, 0, 1})) - a, d = glm::dvec2(uv) - a;
-    const double whole = e.x * g.y - e.y * g.x;
-    const double b1 = (d.x * g.y - d.y * g.x) / whole, b2 = (e.x * d.y - e.y * d.x) / whole;
-    if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1)
-      return MeshPoint{f.object, f.triangle, static_cast<float>(b1), static_cast<float>(b2)};
-  }
-  return std::nullopt;
+  return texels.pointAt(texels.texelAt(uv), Plane2(uv) * static_cast<double>(texels.size()));
 }
 
 /// What one metre along a direction of a triangle's plane is in the atlas; the direction turned by `angle`.
@@ -163,8 +154,7 @@ Probe probe(const World& world, const TexelMap& texels, const ItemSurface& item,
   }
   for (std::size_t d = 0; d < kVariationDistances; ++d) {
     const Vec2 away = step * static_cast<float>(options.metres[d]);
-    const std::optional<MeshPoint> before = pointAt(world, texels, uv - away),
-                                   behind = pointAt(world, texels, uv + away);
+    const std::optional<MeshPoint> before = pointAt(texels, uv - away), behind = pointAt(texels, uv + away);
     out.square[d] = std::numeric_limits<double>::quiet_NaN();
     if (!before || !behind) continue;
     out.square[d] = 1;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint32_t kStream = 0x6f70u;  // keeps the random numbers apart from others'
 /// What is nearer than this share of a texel's side covers it: it cannot be told from the surface.
 constexpr float kReach = 0.25f;
-constexpr std::uint32_t kFirstPoints = 4, kMostPoints = 32;
+constexpr std::uint32_t kFirstPoints = 8, kMostPoints = 32;
 
 float openShare(const World& world, const TexelMap& texels, std::size_t texel, int layer) {
   RayCounters counters;

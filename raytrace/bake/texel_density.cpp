@@ -75,7 +75,10 @@ class Chooser {
     // The multiplier's range: from the finest texels everywhere to the coarsest.
     double low = -80, high = 80;
     if (mean_ > 0) {
-      high = bisect(low, high, [&](double m) { return errorOf(sides(m)) <= goal_.relativeError; });
+      // Where the finest texels cannot reach the error, no texels are spent on what hardly adds to it.
+      constexpr double kNearly = 1.05;
+      const double wanted = std::max(goal_.relativeError, kNearly * errorOf(sides(low)));
+      high = bisect(low, high, [&](double m) { return errorOf(sides(m)) <= wanted; });
     }
     if (layout_.texelCount(sides(high)) > goal_.mostTexels) {
       high = -bisect(-80, -high, [&](double m) { return layout_.texelCount(sides(-m)) <= goal_.mostTexels; });

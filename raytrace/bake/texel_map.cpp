@@ -235,6 +235,20 @@ MeshPoint TexelMap::pointOn(std::size_t texel, float u, float v, float w) const 
   return out;
 }
 
+std::optional<MeshPoint> TexelMap::pointAt(std::size_t texel, const Plane2& position) const {
+  for (const TexelFragment& f : fragments(texel)) {
+    const std::size_t corner = std::size_t{3} * f.triangle;
+    const Plane2 a = texelPosition(scene_, f.object, corner, size_),
+                 e = texelPosition(scene_, f.object, corner + 1, size_) - a,
+                 g = texelPosition(scene_, f.object, corner + 2, size_) - a, d = position - a;
+    const double whole = e.x * g.y - e.y * g.x;
+    const double b1 = (d.x * g.y - d.y * g.x) / whole, b2 = (e.x * d.y - e.y * d.x) / whole;
+    if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1)
+      return MeshPoint{f.object, f.triangle, static_cast<float>(b1), static_cast<float>(b2)};
+  }
+  return std::nullopt;
+}
+
 std::size_t TexelMap::texelAt(const core::Vec2& uv) const {
   const auto clampTexel = [&](float at) { return std::clamp(static_cast<int>(at * size_), 0, size_ - 1); };
   return static_cast<std::size_t>(clampTexel(uv.y)) * size_ + clampTexel(uv.x);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,12 @@ struct TexelCover {
   double share = 0;    ///< of the texel
 };
 
+/// One of the columns x rows cells that a texel is cut into; the whole texel.
+struct TexelCell {
+  int columns = 1, rows = 1, x = 0, y = 0;
+  bool whole() const { return columns == 1 && rows == 1; }
+};
+
 /// A point of a charted mesh.
 struct MeshPoint {
   std::uint32_t object = 0, triangle = 0;
@@ -69,6 +76,13 @@ class TexelMap {
   MeshPoint pointOn(std::size_t texel, float u, float v, float w) const;
   /// Of a mesh lit by vertex: of the vertex at mesh.indices[corner].
   std::uint32_t vertexTexel(std::size_t object, std::size_t corner) const;
+  /// The point at a position of the atlas, in texels, that lies in the texel; none where no surface is.
+  std::optional<MeshPoint> pointAt(std::size_t texel, const Plane2& position) const;
+  /// Its corner in the atlas, in texels.
+  Plane2 cornerOf(std::size_t texel) const {
+    const auto size = static_cast<std::size_t>(size_);
+    return {static_cast<double>(texel % size), static_cast<double>(texel / size)};
+  }
   /// The texel that a point of a charted mesh lies in.
   std::size_t texelAt(const core::Vec2& lightmapUv) const;
   /// A layer for backs is needed.

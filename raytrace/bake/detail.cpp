@@ -1,0 +1,114 @@
+#include "raytrace/bake/detail.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raytrace/bake/detail_blocks.h"
+#include "raytrace/parallel_rows.h"
+
+namespace saccade::raytrace {
+namespace {
+
+/// In place of a cell's light: the cell holds no surface; something lies over all that it holds.
+constexpr float kNoSurface = -1, kCovered = -2;
+/// Cells are small: unshadowed light hardly differs within, and their noise counts little.
+constexpr int kWholePoints = 4, kRefinement = 2;
+
+std::size_t cellCount(const core::MapBlock& block) {
+  return static_cast<std::size_t>(block.columns()) * static_cast<std::size_t>(block.rows());
+}
+
+/// A block of one layer: `cells` as traced, and what the atlas holds beside direct light.
+void readCells(const TexelMap& texels, std::size_t texel, const Vec3* cells, std::span<const Vec3> indirect,
+               CellBlock& block) {
+  std::vector<char> surface;
+  for (int y = 0; y < block.rows(); ++y) {
+    for (int x = 0; x < block.columns(); ++x, ++cells) {
+      surface.push_back(cells->x != kNoSurface);
+      block.at(x, y) = Vec3(0);
+      if (cells->x < 0) continue;
+      const Plane2 place = (Plane2(x, y) + 0.5) / Plane2(block.columns(), block.rows());
+      block.at(x, y) = *cells + betweenTexels(indirect, texels.size(), texels.cornerOf(texel) + place);
+    }
+  }
+  block.fill(std::move(surface));
+}
+
+}  // namespace
+
+DetailLight::DetailLight(const World& world, const TexelMap& texels, const OpenArea& open, int layers,
+                         const DetailGoal& goal)
+    : world_(world),
+      texels_(texels),
+      open_(open),
+      layers_(layers),
+      goal_(goal),
+      probes_(goal.mostTexels > 0 ? texels.texelCount() : 0),
+      cells_(goal.mostTexels * static_cast<std::size_t>(layers)) {}
+
+std::size_t DetailLight::probe(std::span<const LayerLight> layers, const DirectOptions& options,
+                               BlockRange blocks, const core::Progress& progress) {
+  return probeEdges(world_, texels_, open_, layers, goal_, options, blocks, progress, probes_);
+}
+
+void DetailLight::plan(std::span<const LayerLight> layers, const ImportedLight* imported) {
+  if (plan_) return;
+  std::vector<EdgeProbe> probes = probes_;
+  for (std::size_t t = 0; imported && t < probes.size(); ++t) {
+    if (texels_.chartOf(t) >= 0 && imported->imageOfObject[texels_.fragments(t).front().object] >= 0)
+      probes[t] = {};
+  }
+  plan_ = planDetail(texels_, layers, probes, goal_);
+  std::size_t next = 0;
+  for (const DetailTexel& t : *plan_) {
+    first_.push_back(next);
+    next += cellCount(t.block) * static_cast<std::size_t>(layers_);
+  }
+}
+
+std::uint64_t DetailLight::trace(std::uint64_t first, std::uint64_t last, const DirectOptions& options,
+                                 const core::Progress& progress) {
+  DirectOptions ofCells = options;
+  ofCells.wholePoints = kWholePoints;
+  ofCells.refinement = kRefinement;
+  const DirectLight light(world_, texels_, open_, ofCells);
+  const auto traceBlock = [&](std::size_t b) {
+    const auto& [texel, block] = (*plan_)[b];
+    Vec3* out = &cells_[first_[b]];
+    for (int layer = 0; layer < layers_; ++layer) {
+      const bool lit = open_.areas(layer)[texel] > 0;
+      for (int y = 0; y < block.rows(); ++y) {
+        for (int x = 0; x < block.columns(); ++x) {
+          const CellLight cell =
+              lit ? light.at(texel, layer, {block.columns(), block.rows(), x, y}) : CellLight();
+          *out++ = cell.open ? cell.light.irradiance : Vec3(cell.surface ? kCovered : kNoSurface);
+        }
+      }
+    }
+  };
+  const BlockOrder order(kPieces);
+  const std::size_t count = plan_->size();
+  const int done =
+      rowsUntilStopped(static_cast<int>(last - first), options.threads, progress, [&](int i, int) {
+        const std::size_t piece = order.at(first + static_cast<std::size_t>(i));
+        for (std::size_t b = count * piece / kPieces; b < count * (piece + 1) / kPieces; ++b) traceBlock(b);
+      });
+  return first + static_cast<std::uint64_t>(done);
+}
+
+core::MapDetail DetailLight::finish(std::span<const std::vector<Vec3>> indirect,
+                                    std::span<const std::vector<Vec3>> irradiance,
+                                    const KeptCharts* kept) const {
+  DetailAtlas atlas(texels_, *plan_, kept);
+  for (int l = 0; l < layers_; ++l) {
+    const auto at = static_cast<std::size_t>(l);
+    for (std::size_t b = 0; b < plan_->size(); ++b) {
+      const DetailTexel& t = (*plan_)[b];
+      readCells(texels_, t.texel, &cells_[first_[b] + at * cellCount(t.block)], indirect[at], atlas.block(b));
+    }
+    atlas.addLayer(irradiance[at], l);
+  }
+  return atlas.take();
+}
+
+}  // namespace saccade::raytrace

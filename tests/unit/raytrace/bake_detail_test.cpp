@@ -1,0 +1,194 @@
+// Finer texels where light steps: what they gain against known light, and what they must not change.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stop_token>
+
+#include "raytrace/bake/detail_plan.h"
+#include "tests/unit/raytrace/bake_scenes.h"
+
+namespace saccade::raytrace {
+namespace {
+
+using core::Vec3;
+
+constexpr float kLampHeight = 2, kScreenHeight = 1, kFloorHalf = 1;
+
+/// A floor of [-1, 1]^2 under a point lamp over its middle; a screen at half the height, from x = `edge` on,
+/// hides the lamp from all beyond x = 2 edge.
+core::Scene screened(float edge, float turn = 0) {
+  SceneBuilder b;
+  b.quad(SceneBuilder::matte(0), {-kFloorHalf, 0, -kFloorHalf}, {0, 0, 2 * kFloorHalf},
+         {2 * kFloorHalf, 0, 0});
+  b.scene.materials[0].baseColor = Vec3(0.5f);
+  if (edge < kFloorHalf) {
+    b.patch(SceneBuilder::matte(0), 1, 1, [&](float s, float t) {
+      const float x = edge + 4 * s, z = 8 * t - 4;
+      return Vec3(x * std::cos(turn) - z * std::sin(turn), kScreenHeight,
+                  x * std::sin(turn) + z * std::cos(turn));
+    });
+  }
+  core::PunctualLight lamp;
+  lamp.position = {0, kLampHeight, 0};
+  lamp.intensity = Vec3(1);
+  b.scene.lights.push_back(lamp);
+  b.scene.bounds.add(lamp.position);
+  return b.scene;
+}
+
+double lampAt(float x, float z) {
+  const double squared = kLampHeight * kLampHeight + x * x + z * z;
+  return kLampHeight / (squared * std::sqrt(squared));
+}
+
+/// Root mean square error over the floor, relative to the mean.
+double errorOf(const Baked& baked, float edge, float turn = 0) {
+  double sum = 0, mean = 0;
+  constexpr int kPoints = 200;
+  for (int i = 0; i < kPoints; ++i) {
+    for (int k = 0; k < kPoints; ++k) {
+      const auto at = [](int n) { return (static_cast<float>(n) + 0.37f) / kPoints * 1.9f - 0.95f; };
+      const float x = at(i), z = at(k);
+      const double truth = x * std::cos(turn) + z * std::sin(turn) > 2 * edge ? 0 : lampAt(x, z);
+      const double error = baked.irradiance(0, {x, 0, z}).y - truth;
+      sum += error * error;
+      mean += truth;
+    }
+  }
+  return std::sqrt(sum / (kPoints * kPoints)) / (mean / (kPoints * kPoints));
+}
+
+BakeOptions options(std::size_t detailTexels) {
+  BakeOptions o;
+  o.quality = "medium";
+  o.photons = 1000;
+  o.detailTexels = detailTexels;
+  return o;
+}
+
+std::size_t blockTexels(const core::MapDetail& detail) {
+  std::size_t sum = 0;
+  for (const std::uint32_t packed : detail.blocks) {
+    if (packed == 0) continue;
+    const core::MapBlock block = core::MapBlock::unpack(packed);
+    sum += static_cast<std::size_t>((block.columns() + 2) * (block.rows() + 2));
+  }
+  return sum;
+}
+
+TEST(BakeDetail, AnEdgeAlongTexelsNeedsFewCellsOnlyAcrossIt) {
+  constexpr float kEdge = 0.1007f;
+  const Baked coarse(screened(kEdge), 32, options(0)), fine(screened(kEdge), 32, options(4000));
+  EXPECT_EQ(coarse.maps().detail.height, 0);
+  // Cut 32 times across, the edge's error in the square falls 32 times; 4 in the root leave some for the
+  // rest.
+  EXPECT_LT(errorOf(fine, kEdge), errorOf(coarse, kEdge) / 4);
+  for (const std::uint32_t packed : fine.maps().detail.blocks) {
+    if (packed == 0) continue;
+    const core::MapBlock block = core::MapBlock::unpack(packed);
+    EXPECT_LE(std::min(block.columns(), block.rows()), 4);
+  }
+}
+
+TEST(BakeDetail, AnEdgeAskewIsFollowed) {
+  constexpr float kEdge = 0.1007f, kTurn = 0.6f;
+  const Baked coarse(screened(kEdge, kTurn), 32, options(0)), fine(screened(kEdge, kTurn), 32, options(8000));
+  EXPECT_LT(errorOf(fine, kEdge, kTurn), errorOf(coarse, kEdge, kTurn) / 2);
+}
+
+TEST(BakeDetail, MoreTexelsLeaveLessErrorAndAreNotExceeded) {
+  constexpr float kEdge = 0.1007f, kTurn = 0.6f;
+  double before = 1e9;
+  for (const std::size_t most : {500, 2000, 8000}) {
+    const Baked baked(screened(kEdge, kTurn), 32, options(most));
+    const std::size_t texels = blockTexels(baked.maps().detail);
+    EXPECT_LE(texels, most);
+    EXPECT_GT(texels, most / 4);
+    const double error = errorOf(baked, kEdge, kTurn);
+    EXPECT_LT(error, before);
+    before = error;
+  }
+}
+
+TEST(BakeDetail, EvenLightHasNoBlocks) {
+  const Baked baked(screened(2 * kFloorHalf), 32, options(100000));
+  EXPECT_EQ(baked.maps().detail.height, 0);
+  EXPECT_TRUE(baked.maps().detail.blocks.empty());
+}
+
+TEST(BakeDetail, NeighboursAgreeAtTheirCommonBorder) {
+  constexpr float kEdge = 0.1007f, kTurn = 0.6f;
+  const Baked baked(screened(kEdge, kTurn), 32, options(20000));
+  const core::IlluminationMaps& maps = baked.maps();
+  const auto block = [&](int x, int y) {
+    return core::MapBlock::unpack(maps.detail.blocks[static_cast<std::size_t>(y * maps.width + x)]);
+  };
+  const auto cell = [&](int x, int y) {
+    return maps.detail.texels[3 * static_cast<std::size_t>(y * maps.width + x)];
+  };
+  int pairs = 0;
+  for (int y = 0; y < maps.height; ++y) {
+    for (int x = 0; x + 1 < maps.width; ++x) {
+      const core::MapBlock a = block(x, y), b = block(x + 1, y);
+      if (a.packed() == 0 || b.packed() == 0 || a.columns() != b.columns() || a.rows() != b.rows()) continue;
+      if (core::MapBlock::unpack(b.packed()).x == 0) continue;
+      ++pairs;
+      for (int row = 0; row < a.rows(); ++row) {
+        EXPECT_EQ(cell(a.x + a.columns(), a.y + row), cell(b.x, b.y + row));
+        EXPECT_EQ(cell(b.x - 1, b.y + row), cell(a.x + a.columns() - 1, a.y + row));
+      }
+    }
+  }
+  EXPECT_GT(pairs, 5);
+}
+
+TEST(BakeDetail, SameBitsForAnyThreadsAndPauses) {
+  const core::Scene scene = screened(0.1007f, 0.6f);
+  const Baked plain(scene, 32, options(5000));
+  BakeOptions threaded = options(5000);
+  threaded.threads = 3;
+  const Baked again(scene, 32, threaded);
+  EXPECT_EQ(plain.maps().detail.blocks, again.maps().detail.blocks);
+  EXPECT_EQ(plain.maps().detail.texels, again.maps().detail.texels);
+
+  BakeJob job(plain.world(), plain.maps().width, options(5000));
+  std::stop_source stop;
+  stop.request_stop();  // a pause after each piece
+  while (!job.advance(stop.get_token(), {})) {
+  }
+  const core::IlluminationMaps paused = job.finish({}, {}, {});
+  EXPECT_EQ(plain.maps().detail.blocks, paused.detail.blocks);
+  EXPECT_EQ(plain.maps().detail.texels, paused.detail.texels);
+}
+
+TEST(BakeDetail, KeptChartsKeepTheirBlocks) {
+  const Baked before(screened(0.1007f, 0.6f), 32, options(5000));
+  const TexelMap texels(before.scene(), before.maps().width);
+  KeptCharts kept;
+  kept.previous = &before.maps();
+  kept.keep.assign(texels.charts().size(), 1);
+  BakeOptions o = options(5000);
+  o.kept = &kept;
+  o.seed = 7;
+  const core::IlluminationMaps after = bakeMaps(before.world(), {}, before.maps().width, o, {});
+  EXPECT_EQ(after.detail.blocks, before.maps().detail.blocks);
+  EXPECT_EQ(after.detail.texels, before.maps().detail.texels);
+}
+
+TEST(BakeDetail, ImportedLightIsNotHiddenByBlocks) {
+  core::Scene scene = screened(0.1007f, 0.6f);
+  scene.meshes[0].uv1 = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  ImportedLight imported;
+  imported.images.emplace_back(1, 1);
+  imported.images[0].at(0, 0) = Vec3(3);
+  imported.imageOfObject.assign(scene.objects.size(), -1);
+  imported.imageOfObject[0] = 0;
+  BakeOptions o = options(5000);
+  o.imported = &imported;
+  const Baked baked(scene, 32, o);
+  EXPECT_EQ(baked.irradiance(0, {0.2f, 0, 0}), Vec3(3));
+  EXPECT_EQ(baked.maps().detail.height, 0);
+}
+
+}  // namespace
+}  // namespace saccade::raytrace
