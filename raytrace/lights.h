@@ -10,6 +10,7 @@
 
 #include "core/scene/scene.h"
 #include "raytrace/alias_table.h"
+#include "raytrace/emission_aim.h"
 #include "raytrace/environment_light.h"
 #include "raytrace/light_tree.h"
 #include "raytrace/ray.h"
@@ -87,7 +88,10 @@ class Lights {
     return choice.environment * environment_->pdf(direction);
   }
 
-  EmissionSample sampleEmission(float uLight, const Vec2& uPosition, const Vec2& uDirection) const;
+  /// `aim`: null, or where some are to start instead, with the weights that keep the mean; `chance` is its.
+  EmissionSample sampleEmission(float uLight, const Vec2& uPosition, const Vec2& uDirection,
+                                const EmissionAim* aim = nullptr,
+                                const EmissionAim::Chance& chance = {}) const;
 
  private:
   struct Emissive {
@@ -107,6 +111,10 @@ class Lights {
     Vec3 normal{0};  ///< common normal when flat and single-sided, else 0
     AliasTable triangles;
   };
+  struct Aiming {
+    const EmissionAim* aim;  ///< null: plain emission
+    const EmissionAim::Chance& chance;
+  };
   void addEmissive(const core::Scene& scene);
   void addPunctual(const core::Scene& scene);
   void addEnvironment(const core::Scene& scene);
@@ -122,11 +130,11 @@ class Lights {
   float environmentShare(float others) const;
   // `probability`: with which it came to be asked; the flux is divided by it.
   EmissionSample emitFromTriangle(const Group& group, float probability, float uTriangle,
-                                  const Vec2& uPosition, const Vec2& uDirection) const;
+                                  const Vec2& uPosition, const Vec2& uDirection, const Aiming& aiming) const;
   EmissionSample emitFromPunctual(const Group& group, float probability, const Vec2& uPosition,
-                                  const Vec2& uDirection) const;
+                                  const Vec2& uDirection, const Aiming& aiming) const;
   EmissionSample emitFromAfar(const Vec3& direction, const Vec3& irradiance, float probability,
-                              const Vec2& uPosition) const;
+                              const Vec2& uPosition, const Aiming& aiming) const;
 
   const core::Scene& scene_;
   const World& world_;

@@ -7,6 +7,7 @@
 #include "core/math/random.h"
 #include "raytrace/bake/duplicates.h"
 #include "raytrace/bsdf.h"
+#include "raytrace/emission_aim.h"
 #include "raytrace/lights.h"
 #include "raytrace/medium.h"
 #include "raytrace/surface.h"
@@ -22,21 +23,26 @@ constexpr float kMaxNormalRatio = 4;  // bound on cos(shading) / cos(geometric) 
 /// Follows one particle at a time; one per thread.
 class Tracer {
  public:
-  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, ParticleState& state,
-         RayCounters& counters)
+  Tracer(const World& world, const TexelMap& texels, const Duplicates& duplicates, const EmissionAim& aim,
+         ParticleState& state, RayCounters& counters)
       : world_(world),
         texels_(texels),
         duplicates_(duplicates),
+        aim_(aim),
         state_(state),
         perWatt_(static_cast<float>(1 / world.lights().totalPower())),
         counters_(counters) {}
 
-  /// `whole`: beyond the first diffuse surface.
+  /// `whole`: beyond the first diffuse surface; others are aimed.
   void follow(std::uint64_t index, std::uint32_t seed, bool whole) {
     core::PixelSampler random(kParticleStream, 0, index, seed);
     const float uLight = random.next1D();
     const Vec2 uPosition = random.next2D();
-    const EmissionSample start = world_.lights().sampleEmission(uLight, uPosition, random.next2D());
+    const Vec2 uDirection = random.next2D();
+    EmissionAim::Chance chance;
+    if (!whole) chance = {random.next1D(), random.next1D(), random.next2D()};
+    const EmissionSample start =
+        world_.lights().sampleEmission(uLight, uPosition, uDirection, whole ? nullptr : &aim_, chance);
     Vec3 weight = start.flux * perWatt_;
     Ray ray{offsetOrigin(start.origin, start.normal, start.direction, start.offset), start.direction, 0,
             core::kInfinity};
@@ -135,6 +141,7 @@ class Tracer {
   const World& world_;
   const TexelMap& texels_;
   const Duplicates& duplicates_;
+  const EmissionAim& aim_;
   ParticleState& state_;
   float perWatt_;
   bool diffuse_ = false;  ///< the present particle has met a diffuse lobe
@@ -172,9 +179,12 @@ void traceParticles(const World& world, const TexelMap& texels, const ParticleOp
   const auto batches = static_cast<int>(
       std::min<std::uint64_t>((last - first + kBatch - 1) / kBatch, std::numeric_limits<int>::max()));
   const Duplicates duplicates(world);
+  const EmissionAim aim = state.caustics && last > options.whole
+                              ? EmissionAim(world)
+                              : EmissionAim(std::vector<EmissionAim::Target>());
   const int done = rowsUntilStopped(batches, options.threads, progress, [&](int batch, int) {
     RayCounters own;
-    Tracer tracer(world, texels, duplicates, state, options.counters ? *options.counters : own);
+    Tracer tracer(world, texels, duplicates, aim, state, options.counters ? *options.counters : own);
     const std::uint64_t begin = first + static_cast<std::uint64_t>(batch) * kBatch;
     for (std::uint64_t i = begin; i < std::min(begin + kBatch, last); ++i) {
       tracer.follow(i, options.seed, i < options.whole);

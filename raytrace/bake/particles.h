@@ -86,9 +86,10 @@ struct ParticleOptions {
 /// tracer with Russian roulette; at each hit on a side that shows irradiance, deposits the flux that has met
 /// a surface before in the texel hit: layer 0 for fronts, 1 for backs of double-sided materials. At each
 /// surface either the diffuse lobe or the others are drawn, in proportion to what they reflect, and a
-/// direction of those alone: so both kinds are unbiased by themselves. Deterministic for any `threads` and
-/// any pauses: when a stop is requested it ends after whole batches, at least one, and state.emitted says how
-/// far.
+/// direction of those alone: so both kinds are unbiased by themselves. The `caustic` ones are aimed at
+/// specular objects (emission_aim.h): their weights have the same mean, from many more. Deterministic for any
+/// `threads` and any pauses: when a stop is requested it ends after whole batches, at least one, and
+/// state.emitted says how far.
 void traceParticles(const World& world, const TexelMap& texels, const ParticleOptions& options,
                     std::uint64_t last, const core::Progress& progress, ParticleState& state);
 
