@@ -260,7 +260,8 @@ void BakeJob::addDetail() {
   stage.work = [this](std::uint64_t first, std::uint64_t last,
                       const core::Progress& progress) -> std::uint64_t {
     detail_.plan(directLayers(), options_.imported);
-    return detail_.trace(first, last, directOptions(), progress);
+    if (source_.layers[0].empty()) findSource({});
+    return detail_.trace(first, last, source_, directOptions(), progress);
   };
   stages_.push_back(std::move(stage));
 }

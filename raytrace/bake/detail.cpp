@@ -13,22 +13,55 @@ namespace {
 constexpr float kNoSurface = -1, kCovered = -2;
 /// Cells are small: unshadowed light hardly differs within, and their noise counts little.
 constexpr int kWholePoints = 4, kRefinement = 2;
+constexpr int kNearRays = 16;
+/// What is nearer than so many texel sides does not hide the same of all cells.
+constexpr float kNearTexels = 2;
 
 std::size_t cellCount(const core::MapBlock& block) {
   return static_cast<std::size_t>(block.columns()) * static_cast<std::size_t>(block.rows());
 }
 
-/// A block of one layer: `cells` as traced, and what the atlas holds beside direct light.
-void readCells(const TexelMap& texels, std::size_t texel, const Vec3* cells, std::span<const Vec3> indirect,
-               CellBlock& block) {
+/// What surfaces that the texel cannot tell from one another do to indirect light within it.
+class NearShare {
+ public:
+  explicit NearShare(std::span<const TracedCell> cells) {
+    int count = 0;
+    for (const TracedCell& cell : cells) {
+      if (cell.direct.x < 0) continue;
+      irradiance_ += cell.near.irradiance;
+      open_ += cell.near.open;
+      ++count;
+    }
+    if (count == 0) return;
+    irradiance_ /= static_cast<float>(count);
+    open_ /= static_cast<float>(count);
+  }
+  /// Of a cell; `indirect`: as the atlas has it there.
+  Vec3 indirect(const NearLight& cell, const Vec3& indirect) const {
+    if (!(open_ > 0)) return cell.irradiance;
+    const Vec3 far = glm::max(indirect - irradiance_, Vec3(0)) / open_;
+    return far * cell.open + cell.irradiance;
+  }
+
+ private:
+  Vec3 irradiance_{0};
+  float open_ = 0;
+};
+
+/// A block of one layer: its cells as traced, and what the atlas holds beside direct light.
+void readCells(const TexelMap& texels, std::size_t texel, std::span<const TracedCell> cells,
+               std::span<const Vec3> indirect, CellBlock& block) {
+  const NearShare near(cells);
   std::vector<char> surface;
   for (int y = 0; y < block.rows(); ++y) {
-    for (int x = 0; x < block.columns(); ++x, ++cells) {
-      surface.push_back(cells->x != kNoSurface);
+    for (int x = 0; x < block.columns(); ++x) {
+      const TracedCell& cell = cells[surface.size()];
+      surface.push_back(cell.direct.x != kNoSurface);
       block.at(x, y) = Vec3(0);
-      if (cells->x < 0) continue;
+      if (cell.direct.x < 0) continue;
       const Plane2 place = (Plane2(x, y) + 0.5) / Plane2(block.columns(), block.rows());
-      block.at(x, y) = *cells + betweenTexels(indirect, texels.size(), texels.cornerOf(texel) + place);
+      const Vec3 around = betweenTexels(indirect, texels.size(), texels.cornerOf(texel) + place);
+      block.at(x, y) = cell.direct + near.indirect(cell.near, around);
     }
   }
   block.fill(std::move(surface));
@@ -66,23 +99,31 @@ void DetailLight::plan(std::span<const LayerLight> layers, const ImportedLight* 
   }
 }
 
-std::uint64_t DetailLight::trace(std::uint64_t first, std::uint64_t last, const DirectOptions& options,
-                                 const core::Progress& progress) {
+std::uint64_t DetailLight::trace(std::uint64_t first, std::uint64_t last, const TexelLight& source,
+                                 const DirectOptions& options, const core::Progress& progress) {
   DirectOptions ofCells = options;
   ofCells.wholePoints = kWholePoints;
   ofCells.refinement = kRefinement;
   const DirectLight light(world_, texels_, open_, ofCells);
+  GatherOptions gather;
+  gather.rays = kNearRays;
+  gather.seed = options.seed;
+  const auto traceCell = [&](std::size_t texel, const TexelCell& at, int layer) {
+    const CellLight direct = light.at(texel, layer, at);
+    if (!direct.open) return TracedCell{Vec3(direct.surface ? kCovered : kNoSurface), {}};
+    const float reach = kNearTexels * std::sqrt(texels_.area(texel));
+    return TracedCell{direct.light.irradiance,
+                      nearLight(world_, texels_, texel, at, layer, reach, source, gather)};
+  };
   const auto traceBlock = [&](std::size_t b) {
     const auto& [texel, block] = (*plan_)[b];
-    Vec3* out = &cells_[first_[b]];
+    TracedCell* out = &cells_[first_[b]];
     for (int layer = 0; layer < layers_; ++layer) {
       const bool lit = open_.areas(layer)[texel] > 0;
       for (int y = 0; y < block.rows(); ++y) {
-        for (int x = 0; x < block.columns(); ++x) {
-          const CellLight cell =
-              lit ? light.at(texel, layer, {block.columns(), block.rows(), x, y}) : CellLight();
-          *out++ = cell.open ? cell.light.irradiance : Vec3(cell.surface ? kCovered : kNoSurface);
-        }
+        for (int x = 0; x < block.columns(); ++x)
+          *out++ = lit ? traceCell(texel, {block.columns(), block.rows(), x, y}, layer)
+                       : TracedCell{Vec3(kNoSurface), {}};
       }
     }
   };
@@ -104,7 +145,8 @@ core::MapDetail DetailLight::finish(std::span<const std::vector<Vec3>> indirect,
     const auto at = static_cast<std::size_t>(l);
     for (std::size_t b = 0; b < plan_->size(); ++b) {
       const DetailTexel& t = (*plan_)[b];
-      readCells(texels_, t.texel, &cells_[first_[b] + at * cellCount(t.block)], indirect[at], atlas.block(b));
+      const std::size_t count = cellCount(t.block);
+      readCells(texels_, t.texel, {&cells_[first_[b] + at * count], count}, indirect[at], atlas.block(b));
     }
     atlas.addLayer(irradiance[at], l);
   }

@@ -1,5 +1,6 @@
-// Finer texels where direct light steps (core::MapDetail): their direct light by shadow rays of their own;
-// what else arrives is smooth and taken from the atlas.
+// Finer texels where direct light steps (core::MapDetail): their direct light by shadow rays of their own.
+// What else arrives is smooth and taken from the atlas, but for what near surfaces hide and send: in a corner
+// or a gap, indirect light differs from cell to cell by the open share of the hemisphere.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include "core/progress.h"
 #include "raytrace/bake/detail_plan.h"
 #include "raytrace/bake/direct.h"
+#include "raytrace/bake/gather.h"
 #include "raytrace/bake/imported_light.h"
 #include "raytrace/bake/kept.h"
 #include "raytrace/bake/texel_map.h"
@@ -19,7 +21,13 @@
 
 namespace saccade::raytrace {
 
-/// The stages of a bake that find the cells' direct light. One thread owns it.
+/// One cell as traced.
+struct TracedCell {
+  Vec3 direct{0};  ///< W/m^2; negative where there is no open surface
+  NearLight near;
+};
+
+/// The stages of a bake that find the cells' light. One thread owns it.
 class DetailLight {
  public:
   /// Of a bake's work: pieces that it can pause after, however many blocks there are.
@@ -40,10 +48,11 @@ class DetailLight {
 
   /// Pieces [first, last); returns the first that was not done, for a stop was requested (at least one is).
   /// Same bits for any number of threads and any ranges. Needs a plan.
-  std::uint64_t trace(std::uint64_t first, std::uint64_t last, const DirectOptions& options,
-                      const core::Progress& progress);
+  /// `source`: what rays to near surfaces look up.
+  std::uint64_t trace(std::uint64_t first, std::uint64_t last, const TexelLight& source,
+                      const DirectOptions& options, const core::Progress& progress);
   /// All that was traced, for checkpoints.
-  std::span<Vec3> cells() { return cells_; }
+  std::span<TracedCell> cells() { return cells_; }
 
   /// Blocks with their borders, traced and completed. `indirect` by layer: what the atlas holds beside direct
   /// light, gutters filled; `irradiance` by layer: all that it holds. `kept` (null: none): blocks of its
@@ -60,7 +69,7 @@ class DetailLight {
   std::vector<EdgeProbe> probes_;
   std::optional<std::vector<DetailTexel>> plan_;
   std::vector<std::size_t> first_;  ///< by block: of its cells in cells_, layer by layer
-  std::vector<Vec3> cells_;         ///< W/m^2; negative where there is no open surface
+  std::vector<TracedCell> cells_;
 };
 
 }  // namespace saccade::raytrace

@@ -15,6 +15,8 @@ constexpr int kMaxEvents = 64;                    // surfaces met; a mirror box 
 constexpr int kMostTries = 4;                     // samples drawn for one that is not covered
 constexpr std::uint32_t kGatherStream = 0x6761u;  // keeps the random numbers apart from others'
 
+constexpr std::uint32_t kNearStream = 0x6e656172u;
+
 /// Bits of x and y in turn: neighbouring texels have neighbouring numbers, so that the samples of any patch
 /// of texels lie about as evenly as those of one (Ahmed and Wonka 2020, "Screen-Space Blue-Noise Diffusion of
 /// Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", their z-order).
@@ -29,6 +31,15 @@ std::uint64_t mortonOf(std::uint32_t x, std::uint32_t y) {
   return spread(x) | spread(y) << 1;
 }
 
+/// Drawn by the cosine around `normal`; none where it lies below the surface.
+std::optional<Vec3> cosineDirection(const Surface& from, const Vec3& normal, const Vec2& u) {
+  const float sine = std::sqrt(u.x), angle = 2 * core::kPi * u.y, up = std::sqrt(std::max(0.0f, 1 - u.x));
+  const Vec3 direction =
+      glm::normalize(Frame(normal).toWorld({sine * std::cos(angle), sine * std::sin(angle), up}));
+  if (!(glm::dot(direction, from.ng) > 0) || !(up > 0)) return std::nullopt;
+  return direction;
+}
+
 /// One gather ray with all that follows from it.
 class Gatherer {
  public:
@@ -38,11 +49,11 @@ class Gatherer {
 
   /// Irradiance by one ray drawn by the cosine around `normal`; 0 where that lies below the surface.
   Vec3 irradiance(const Surface& from, const Vec3& normal, const Vec2& u) {
-    const float sine = std::sqrt(u.x), angle = 2 * core::kPi * u.y, up = std::sqrt(std::max(0.0f, 1 - u.x));
-    const Vec3 direction =
-        glm::normalize(Frame(normal).toWorld({sine * std::cos(angle), sine * std::sin(angle), up}));
-    if (!(glm::dot(direction, from.ng) > 0) || !(up > 0)) return Vec3(0);
-    follow(from.leave(direction));
+    const std::optional<Vec3> direction = cosineDirection(from, normal, u);
+    return direction ? along(from.leave(*direction)) : Vec3(0);
+  }
+  Vec3 along(const Ray& ray) {
+    follow(ray);
     return sum_ * core::kPi;
   }
 
@@ -149,6 +160,41 @@ std::size_t gatherIrradiance(const World& world, const TexelMap& texels, const O
     if (options.keptCharts && (*options.keptCharts)[static_cast<std::size_t>(texels.chartOf(texel))]) return;
     out[texel] = gatherTexel(world, texels, texel, layer, area < texels.area(texel), source, options);
   });
+}
+
+NearLight nearLight(const World& world, const TexelMap& texels, std::size_t texel, const TexelCell& cell,
+                    int layer, float reach, const TexelLight& source, const GatherOptions& options) {
+  RayCounters own;
+  RayCounters& counters = options.counters ? *options.counters : own;
+  const auto number =
+      static_cast<std::uint32_t>(((cell.columns + cell.x) << 16) + ((cell.rows + cell.y) << 1));
+  NearLight out;
+  glm::dvec3 sum(0);
+  int count = 0, near = 0;
+  for (int i = 0; i < kMostTries * options.rays && count < options.rays; ++i) {
+    core::PixelSampler random(kNearStream + number + static_cast<std::uint32_t>(layer),
+                              static_cast<std::uint32_t>(texel), static_cast<std::uint64_t>(i), options.seed);
+    const Vec2 u = random.next2D(), place = random.next2D();
+    const std::optional<MeshPoint> at =
+        texels.pointAt(texel, texels.cornerOf(texel) +
+                                  (Plane2(cell.x, cell.y) + Plane2(place)) / Plane2(cell.columns, cell.rows));
+    if (!at) continue;
+    const std::uint32_t triangle = world.firstTriangle(at->object) + at->triangle;
+    const Surface from = surfaceOn(world, at->object, triangle, at->b1, at->b2, layer == 0);
+    const Vec3 normal = smoothNormal(world, at->object, triangle, at->b1, at->b2, from.ng);
+    ++count;
+    const std::optional<Vec3> direction = cosineDirection(from, normal, u);
+    if (!direction) continue;
+    Ray ray = from.leave(*direction);
+    Hit hit;
+    if (!world.intersect(ray, hit, counters) || hit.t > reach) continue;
+    ++near;
+    sum += Gatherer(world, texels, source, random, counters).along(ray);
+  }
+  if (count == 0) return out;
+  out.irradiance = Vec3(sum / static_cast<double>(count));
+  out.open = static_cast<float>(count - near) / static_cast<float>(count);
+  return out;
 }
 
 }  // namespace saccade::raytrace

@@ -46,4 +46,15 @@ std::size_t gatherIrradiance(const World& world, const TexelMap& texels, const O
                              BlockRange blocks, const TexelLight& source, const GatherOptions& options,
                              const core::Progress& progress, std::span<DirectEstimate> out);
 
+/// Indirect light at one place, parted by how far it comes.
+struct NearLight {
+  Vec3 irradiance{0};  ///< W/m^2, by what is met within the reach, and all that comes by way of it
+  float open = 1;      ///< share of the hemisphere, by the cosine, in which nothing is met
+};
+
+/// Mean over the open surface of a cell of a texel, by `options.rays` rays; `reach` in metres. Nothing is
+/// near where the cell has no open surface.
+NearLight nearLight(const World& world, const TexelMap& texels, std::size_t texel, const TexelCell& cell,
+                    int layer, float reach, const TexelLight& source, const GatherOptions& options);
+
 }  // namespace saccade::raytrace

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <stop_token>
 
-#include "raytrace/bake/detail_plan.h"
+#include "raytrace/bake/gather.h"
+#include "raytrace/bake/texel_map.h"
+#include "raytrace/surface.h"
 #include "tests/unit/raytrace/bake_scenes.h"
 
 namespace saccade::raytrace {
@@ -173,6 +175,40 @@ TEST(BakeDetail, KeptChartsKeepTheirBlocks) {
   const core::IlluminationMaps after = bakeMaps(before.world(), {}, before.maps().width, o, {});
   EXPECT_EQ(after.detail.blocks, before.maps().detail.blocks);
   EXPECT_EQ(after.detail.texels, before.maps().detail.texels);
+}
+
+/// A cell in the foot of a wall sees half of the sky, one in the open all of it.
+TEST(BakeDetail, NearSurfacesPartTheHemisphereByTheCosine) {
+  SceneBuilder b;
+  b.quad(SceneBuilder::matte(0.5f), {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+  b.quad(SceneBuilder::matte(0.5f), {0, 0, -1}, {0, 2, 0}, {0, 0, 2});
+  core::Plan plan;
+  plan.lightmapSize = 64;
+  const ChartAtlas atlas = makeCharts(b.scene, plan, 64);
+  core::applyCharts(b.scene, atlas.charts);
+  const World world(b.scene, plan);
+  const TexelMap texels(b.scene, atlas.size);
+  TexelLight source;
+  source.layers[0].assign(texels.texelCount(), Vec3(2));
+  GatherOptions gather;
+  gather.rays = 1024;
+  int atWall = 0, inTheOpen = 0;
+  for (std::size_t t = 0; t < texels.texelCount(); ++t) {
+    if (texels.chartOf(t) < 0 || texels.fragments(t).front().object != 0) continue;
+    const TexelCell cell{4, 4, 1, 1};
+    const MeshPoint at = texels.pointOn(t, 0.5f, 0.5f, 0.5f);
+    const float x = surfaceOn(world, 0, at.triangle, at.b1, at.b2, true).position.x;
+    const NearLight light = nearLight(world, texels, t, cell, 0, 0.2f, source, gather);
+    // What a wall of irradiance 2 and albedo 1/2 sends from its share of the hemisphere; nothing, behind it.
+    EXPECT_NEAR(light.irradiance.y, x > 0 ? 1 - light.open : 0, 1e-4);
+    if (std::abs(x) > 0.4f) {
+      EXPECT_EQ(light.open, 1.0f);
+      ++inTheOpen;
+    }
+    atWall += x > 0 && light.open < 0.7f;
+  }
+  EXPECT_GT(inTheOpen, 100);
+  EXPECT_GT(atWall, 10);
 }
 
 TEST(BakeDetail, ImportedLightIsNotHiddenByBlocks) {
