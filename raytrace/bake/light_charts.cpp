@@ -22,7 +22,7 @@ struct Wish {
 // Blocks are finer where light steps: the atlas itself need not be.
 constexpr Wish kWishes[] = {{"preview", 0.08, 1 << 18, 1, 0},
                             {"medium", 0.08, 1 << 18, 0.5, 5 << 18},
-                            {"high", 0.04, 1 << 20, 0.25, 6 << 20}};
+                            {"high", 0.02, 1 << 21, 0.25, 6 << 20}};
 
 constexpr double kTexelsPerChart = 64;
 constexpr int kProbeSize = 512;           // atlas side of the even charts in which light is measured

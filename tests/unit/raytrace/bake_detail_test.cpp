@@ -198,6 +198,7 @@ TEST(BakeDetail, NearSurfacesPartTheHemisphereByTheCosine) {
     const TexelCell cell{4, 4, 1, 1};
     const MeshPoint at = texels.pointOn(t, 0.5f, 0.5f, 0.5f);
     const float x = surfaceOn(world, 0, at.triangle, at.b1, at.b2, true).position.x;
+    if (std::abs(x) < 0.04f) continue;  // the cell may lie on the other side than the texel's middle
     const NearLight light = nearLight(world, texels, t, cell, 0, 0.2f, source, gather);
     // What a wall of irradiance 2 and albedo 1/2 sends from its share of the hemisphere; nothing, behind it.
     EXPECT_NEAR(light.irradiance.y, x > 0 ? 1 - light.open : 0, 1e-4);
