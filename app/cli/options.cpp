@@ -15,7 +15,11 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
   command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
   command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")
       ->group(group);
-  command.add_option("--quality", o.quality, "Quality of the maps when they have to be baked")
+  command
+      .add_option(
+          "--quality", o.quality,
+          "Quality of the maps when they have to be baked: wished for are errors of 10 %, 5 % or 2 % of the "
+          "mean light")
       ->check(CLI::IsMember({"preview", "medium", "high"}))
       ->capture_default_str()
       ->group(group);

@@ -106,9 +106,11 @@ raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, co
                                                          .vertexLight = !bake.chartsOnly},
                                                         {{}, stop});
   w.world = std::move(charts.world);
-  spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; direct light misses {:.2g} % by them",
+  const bool refined = raytrace::detailTexelsOf(options.quality, w.plan, charts.atlas.size) > 0;
+  spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; {}direct light misses {:.2g} % by them",
                charts.atlas.chartCount, charts.atlas.size, charts.atlas.size, charts.finestMetres,
-               charts.coarsestMetres, 100 * charts.relativeError);
+               charts.coarsestMetres, refined ? "before its edges get finer ones " : "",
+               100 * charts.relativeError);
   reportOwnAtlases(charts.atlas.ownAtlases);
   if (const std::size_t n = charts.atlas.vertexLitMeshes; n > 0)
     spdlog::info("{} {} light by vertex", n, n == 1 ? "mesh keeps its" : "meshes keep their");

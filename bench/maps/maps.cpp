@@ -29,29 +29,21 @@ struct Subject {
   float unitScale = 1;
   bool besideCycles = false;
   bool rates = false;  ///< a small, a middling and a large scene say enough
-};
-
-/// A bake: a quality, with so many times its particles.
-struct Setting {
-  std::string quality;
-  std::uint64_t times = 1;
-
-  std::string name() const { return times == 1 ? quality : quality + "-x" + std::to_string(times); }
-  std::uint64_t photons() const { return times * raytrace::photonsOf(quality); }
+  bool high = false;   ///< takes many minutes in large scenes
 };
 
 /// How much is done.
 struct Effort {
-  std::vector<Setting> settings;
+  std::vector<std::string> qualities;
   std::vector<double> errors;  ///< to be reached
   PointTask task;
   PointConfidence confidence;
-  double leastGatherSeconds = 20, mostGatherSeconds = 90;
+  double leastGatherSeconds = 20, mostGatherSeconds = 45;
 };
 
 Effort effortOf(const Session& session) {
-  if (session.quick()) return {{{"preview"}, {"medium"}}, {0.1}, {.points = 512}, {0.05, 10}, 2, 5};
-  return {{{"preview"}, {"preview", 4}, {"medium"}, {"medium", 4}, {"high"}}, {0.1, 0.05}, {}, {}};
+  if (session.quick()) return {{"preview", "medium"}, {0.1}, {.points = 512}, {0.05, 10}, 2, 5};
+  return {{"preview", "medium", "high"}, {0.1, 0.05}, {}, {}};
 }
 
 std::string percentOf(double x) {
@@ -78,14 +70,16 @@ class MapsOfScene {
 
   void run() {
     session_.say("maps: " + name_ + ", reference");
-    reference_ = pointReferenceOf(*app::openWithoutMaps(sceneOptions("preview", 0)), effort_.task,
+    reference_ = pointReferenceOf(*app::openWithoutMaps(sceneOptions("preview")), effort_.task,
                                   effort_.confidence, session_.stop());
     if (reference_.points.empty()) {
       session_.say("maps: " + name_ + " shows no irradiance anywhere; left out");
       return;
     }
     reportReference();
-    for (const Setting& setting : effort_.settings) bake(setting);
+    for (const std::string& quality : effort_.qualities) {
+      if (quality != "high" || subject_.high) bake(quality);
+    }
     gather();
     for (const double error : effort_.errors) reportSoonness(error);
     if (subject_.rates) measureBakeRates(session_, name_, *opened_);
@@ -96,12 +90,11 @@ class MapsOfScene {
  private:
   std::string keyOf(const std::string& name) const { return "maps/" + name_ + "/" + name; }
 
-  app::SceneOptions sceneOptions(const std::string& quality, std::uint64_t photons) const {
+  app::SceneOptions sceneOptions(const std::string& quality) const {
     app::SceneOptions options;
     options.path = subject_.file;
     options.load.unitScale = subject_.unitScale;
     options.quality = quality;
-    options.photons = photons;
     return options;
   }
   std::filesystem::path folder() const { return session_.options().folder / "maps"; }
@@ -149,38 +142,37 @@ class MapsOfScene {
   }
 
   /// As `saccade bake` does it, a few times where that is quick.
-  void bake(const Setting& setting) {
-    const app::BakeRequest request{.file = folder() / (name_ + "-" + setting.name() + ".maps"),
+  void bake(const std::string& quality) {
+    const app::BakeRequest request{.file = folder() / (name_ + "-" + quality + ".maps"),
                                    .always = true,
                                    .threads = threads_,
                                    .seed = session_.options().seed};
-    const app::SceneOptions options =
-        sceneOptions(setting.quality, setting.times == 1 ? 0 : setting.photons());
+    const app::SceneOptions options = sceneOptions(quality);
     const LoadWatch watch;
     std::vector<double> seconds;
     double spent = 0;
     for (int round = 0; round < kRepeats && (round == 0 || spent < kSecondsPerSetting); ++round) {
-      session_.say("maps: " + name_ + ", " + setting.name() + ", repeat " + std::to_string(round + 1));
+      session_.say("maps: " + name_ + ", " + quality + ", repeat " + std::to_string(round + 1));
       opened_.reset();
       seconds.push_back(timed([&] { opened_ = app::openWorkspace(options, request, session_.stop()); }));
       spent += seconds.back();
     }
     const std::vector<core::Vec3> found = lookUp(*opened_->world);
     const MapError error = errorOf(found, reference_.truth);
-    Record record = recordOf(setting.name(), "ours");
-    record.labels["quality"] = setting.quality;
-    record.at = {{"particles", static_cast<double>(setting.photons())}};
+    Record record = recordOf(quality, "ours");
+    record.labels["quality"] = quality;
+    record.at = {{"particles", static_cast<double>(raytrace::photonsOf(quality))}};
     record.values = {{"seconds", Value::seconds(seconds)}};
     addErrors(record, error);
     addSize(record, opened_->maps);
     session_.add(record, &watch);
-    session_.say("maps: " + name_ + ", " + setting.name() + ": error " + percentOf(error.relative));
+    session_.say("maps: " + name_ + ", " + quality + ": error " + percentOf(error.relative));
     ours_.push_back({spread(seconds).median, error.relative});
-    if (setting.name() == "medium") medium_ = {spread(seconds).median, found};
+    if (quality == "medium") medium_ = {spread(seconds).median, found};
     mapsFile_ = request.file;
     mapsOptions_ = options;
-    writeWorstPoints(folder() / (name_ + "-" + setting.name() + "-worst.csv"), *opened_->world, reference_,
-                     found, kWorstPoints);
+    writeWorstPoints(folder() / (name_ + "-" + quality + "-worst.csv"), *opened_->world, reference_, found,
+                     kWorstPoints);
   }
 
   /// Stopped where it has taken so long that ours is proved to be soon enough.
@@ -264,7 +256,8 @@ class MapsOfScene {
 Subject subjectOf(const std::string& file) {
   const std::string name = sceneName(file);
   return {file, name == "conference" ? 0.003f : 1.0f, name == "cornell_glossy",
-          name == "cornell" || name == "gallery" || name == "conference"};
+          name == "cornell" || name == "gallery" || name == "conference",
+          name != "gallery" && name != "conference"};
 }
 
 std::vector<Subject> subjectsOf(const Session& session) {
