@@ -67,6 +67,14 @@ void readCells(const TexelMap& texels, std::size_t texel, std::span<const Traced
   block.fill(std::move(surface));
 }
 
+/// No more texels than rows of blocks of all sizes hold, in an atlas of this width.
+DetailGoal packable(DetailGoal goal, int size) {
+  constexpr double kFilled = 0.4;  // where the widest blocks leave almost half of each row
+  const double most = kFilled * size * core::MapBlock::kLargestCoordinate;
+  goal.mostTexels = static_cast<std::size_t>(std::min(static_cast<double>(goal.mostTexels), most));
+  return goal;
+}
+
 }  // namespace
 
 DetailLight::DetailLight(const World& world, const TexelMap& texels, const OpenArea& open, int layers,
@@ -75,9 +83,9 @@ DetailLight::DetailLight(const World& world, const TexelMap& texels, const OpenA
       texels_(texels),
       open_(open),
       layers_(layers),
-      goal_(goal),
-      probes_(goal.mostTexels > 0 ? texels.texelCount() : 0),
-      cells_(goal.mostTexels * static_cast<std::size_t>(layers)) {}
+      goal_(packable(goal, texels.size())),
+      probes_(goal_.mostTexels > 0 ? texels.texelCount() : 0),
+      cells_(goal_.mostTexels * static_cast<std::size_t>(layers)) {}
 
 std::size_t DetailLight::probe(std::span<const LayerLight> layers, const DirectOptions& options,
                                BlockRange blocks, const core::Progress& progress) {

@@ -112,6 +112,14 @@ TEST(BakeDetail, MoreTexelsLeaveLessErrorAndAreNotExceeded) {
   }
 }
 
+TEST(BakeDetail, ASmallAtlasTakesWhatItsRowsHold) {
+  BakeOptions o = options(100'000'000);
+  o.quality = "high";
+  const Baked baked(screened(0.1007f, 0.6f), 16, o);
+  EXPECT_GT(baked.maps().detail.height, 0);
+  EXPECT_LE(baked.maps().detail.height, core::MapBlock::kLargestCoordinate);
+}
+
 TEST(BakeDetail, EvenLightHasNoBlocks) {
   const Baked baked(screened(2 * kFloorHalf), 32, options(100000));
   EXPECT_EQ(baked.maps().detail.height, 0);
