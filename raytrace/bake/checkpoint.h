@@ -7,7 +7,8 @@
 // with surface and layer that leaves up to 100 bytes: open area 4, direct light 16, gathered light 16 (not at
 // preview), indirect particles 32, caustic ones 32 more (where anything but Lambert reflects). An atlas of
 // 1024 x 1024 so takes at most 105 MB a layer, 72 MB without caustics; 16 times that at 4096 x 4096. Edges of
-// light add 16 bytes a texel, and 28 bytes a cell and layer: 35 MB a layer at medium, 170 MB at high, at most.
+// light add 16 bytes a texel, and 28 bytes a cell and layer: 35 MB a layer at medium, 170 MB at high, at
+// most.
 #pragma once
 
 #include <cstdint>

@@ -34,7 +34,9 @@ Vec3 CellBlock::beyond(int x, int y) const {
 }
 
 void CellBlock::fill(std::vector<char> filled) {
-  const auto number = [this](int x, int y) { return static_cast<std::size_t>(y * columns_ + x); };
+  const auto number = [this](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  };
   for (bool grown = true; grown;) {
     grown = false;
     const std::vector<char> before = filled;
@@ -145,9 +147,10 @@ void DetailAtlas::readKept(std::size_t b, int layer) {
   const core::MapBlock& from = before_[b - ownCount_];
   for (int y = -1; y <= from.rows(); ++y) {
     for (int x = -1; x <= from.columns(); ++x) {
-      const auto row = static_cast<std::size_t>(layer * before.detail.height + from.y + y);
-      const std::uint16_t* half = &before.detail.texels[3 * (row * static_cast<std::size_t>(before.width) +
-                                                             static_cast<std::size_t>(from.x + x))];
+      const int row = layer * before.detail.height + from.y + y;
+      const std::uint16_t* half =
+          &before.detail.texels[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(before.width) +
+                                     static_cast<std::size_t>(from.x + x))];
       blocks_[b].at(x, y) = {core::fromHalf(half[0]), core::fromHalf(half[1]), core::fromHalf(half[2])};
     }
   }
@@ -182,9 +185,10 @@ void DetailAtlas::store(std::size_t b, int layer) {
   const CellBlock& block = blocks_[b];
   const core::MapBlock& where = places_[b].block;
   for (int y = -1; y <= block.rows(); ++y) {
-    const auto row = static_cast<std::size_t>(layer * out_.height + where.y + y);
-    std::uint16_t* out = &out_.texels[3 * (row * static_cast<std::size_t>(texels_.size()) +
-                                           static_cast<std::size_t>(where.x - 1))];
+    const int row = layer * out_.height + where.y + y;
+    std::uint16_t* out =
+        &out_.texels[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(texels_.size()) +
+                          static_cast<std::size_t>(where.x - 1))];
     for (int x = -1; x <= block.columns(); ++x) {
       for (int c = 0; c < 3; ++c) *out++ = mapHalf(block.at(x, y)[c]);
     }

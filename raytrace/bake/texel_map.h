@@ -80,8 +80,8 @@ class TexelMap {
   std::optional<MeshPoint> pointAt(std::size_t texel, const Plane2& position) const;
   /// Its corner in the atlas, in texels.
   Plane2 cornerOf(std::size_t texel) const {
-    const auto size = static_cast<std::size_t>(size_);
-    return {static_cast<double>(texel % size), static_cast<double>(texel / size)};
+    const std::size_t size = static_cast<std::size_t>(size_), row = texel / size;
+    return {static_cast<double>(texel % size), static_cast<double>(row)};
   }
   /// The texel that a point of a charted mesh lies in.
   std::size_t texelAt(const core::Vec2& lightmapUv) const;

@@ -116,9 +116,9 @@ TEST(LongBake, StoppedAndKilledAtSeveralMomentsAndResumedOnAnyThreadsTheFileIsTh
     std::this_thread::sleep_for(i * 37ms);
     child.send(signals[i]);
     const int status = child.wait();
-    if (status == 0) break;  // faster than the signal
+    if (status == 0) break;                    // faster than the signal
+    if (std::filesystem::exists(maps)) break;  // killed after its work was done
     ++stops;
-    EXPECT_FALSE(std::filesystem::exists(maps));
     if (signals[i] == SIGKILL) {
       // Status 1 would mean that the checkpoint which another left was refused.
       ASSERT_EQ(status, 128 + SIGKILL) << Child::errors();
