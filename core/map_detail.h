@@ -6,6 +6,7 @@
 // between the block's cells at corner + fract(uv * size) * (columns, rows), cells' centres at + 0.5.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct MapBlock {
   int log2Columns = 0, log2Rows = 0;  ///< [0, kMostLog2], not both 0
   int columns() const { return 1 << log2Columns; }
   int rows() const { return 1 << log2Rows; }
+  /// Border included.
+  std::size_t texels() const {
+    return static_cast<std::size_t>(columns() + 2) * static_cast<std::size_t>(rows() + 2);
+  }
 
   bool operator==(const MapBlock&) const = default;
   /// Never 0.

@@ -232,7 +232,8 @@ void BakeJob::addGather(int layer) {
 std::vector<LayerLight> BakeJob::directLayers() {
   std::vector<LayerLight> layers;
   for (int layer = 0; layer < layers_; ++layer)
-    layers.push_back({direct_[static_cast<std::size_t>(layer)], open_.areas(layer)});
+    layers.push_back({direct_[static_cast<std::size_t>(layer)], open_.areas(layer),
+                      options_.kept ? &options_.kept->keep : nullptr});
   return layers;
 }
 
@@ -259,7 +260,7 @@ void BakeJob::addDetail() {
   stage.results = bytesOf(detail_.cells());
   stage.work = [this](std::uint64_t first, std::uint64_t last,
                       const core::Progress& progress) -> std::uint64_t {
-    detail_.plan(directLayers(), options_.imported);
+    detail_.plan(directLayers(), options_.kept);
     if (source_.layers[0].empty()) findSource({});
     return detail_.trace(first, last, source_, directOptions(), progress);
   };
@@ -436,8 +437,8 @@ core::IlluminationMaps BakeJob::finish(core::SceneCharts charts, const std::stop
     irradiance.push_back(std::move(finished.irradiance));
     indirect.push_back(std::move(finished.indirect));
   }
-  detail_.plan(directLayers(), options_.imported);
-  maps.detail = detail_.finish(indirect, irradiance, options_.kept);
+  detail_.plan(directLayers(), options_.kept);
+  maps.detail = detail_.finish(indirect, irradiance, options_.kept, options_.imported);
   return maps;
 }
 

@@ -92,14 +92,11 @@ std::size_t DetailLight::probe(std::span<const LayerLight> layers, const DirectO
   return probeEdges(world_, texels_, open_, layers, goal_, options, blocks, progress, probes_);
 }
 
-void DetailLight::plan(std::span<const LayerLight> layers, const ImportedLight* imported) {
+void DetailLight::plan(std::span<const LayerLight> layers, const KeptCharts* kept) {
   if (plan_) return;
-  std::vector<EdgeProbe> probes = probes_;
-  for (std::size_t t = 0; imported && t < probes.size(); ++t) {
-    if (texels_.chartOf(t) >= 0 && imported->imageOfObject[texels_.fragments(t).front().object] >= 0)
-      probes[t] = {};
-  }
-  plan_ = planDetail(texels_, layers, probes, goal_);
+  DetailGoal goal = goal_;
+  if (kept) goal.mostTexels -= std::min(goal.mostTexels, keptBlockTexels(texels_, *kept));
+  plan_ = planDetail(texels_, layers, probes_, goal);
   std::size_t next = 0;
   for (const DetailTexel& t : *plan_) {
     first_.push_back(next);
@@ -146,15 +143,23 @@ std::uint64_t DetailLight::trace(std::uint64_t first, std::uint64_t last, const 
 }
 
 core::MapDetail DetailLight::finish(std::span<const std::vector<Vec3>> indirect,
-                                    std::span<const std::vector<Vec3>> irradiance,
-                                    const KeptCharts* kept) const {
-  DetailAtlas atlas(texels_, *plan_, kept);
+                                    std::span<const std::vector<Vec3>> irradiance, const KeptCharts* kept,
+                                    const ImportedLight* imported) const {
+  std::vector<DetailTexel> shown;
+  std::vector<std::size_t> first;  // of their cells
+  for (std::size_t b = 0; b < plan_->size(); ++b) {
+    const DetailTexel& t = (*plan_)[b];
+    if (imported && imported->imageOfObject[texels_.fragments(t.texel).front().object] >= 0) continue;
+    shown.push_back(t);
+    first.push_back(first_[b]);
+  }
+  DetailAtlas atlas(texels_, shown, kept);
   for (int l = 0; l < layers_; ++l) {
     const auto at = static_cast<std::size_t>(l);
-    for (std::size_t b = 0; b < plan_->size(); ++b) {
-      const DetailTexel& t = (*plan_)[b];
-      const std::size_t count = cellCount(t.block);
-      readCells(texels_, t.texel, {&cells_[first_[b] + at * count], count}, indirect[at], atlas.block(b));
+    for (std::size_t b = 0; b < shown.size(); ++b) {
+      const std::size_t count = cellCount(shown[b].block);
+      readCells(texels_, shown[b].texel, {&cells_[first[b] + at * count], count}, indirect[at],
+                atlas.block(b));
     }
     atlas.addLayer(irradiance[at], l);
   }

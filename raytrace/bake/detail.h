@@ -42,9 +42,9 @@ class DetailLight {
                     const core::Progress& progress);
   std::span<EdgeProbe> probes() { return probes_; }
 
-  /// Chooses the texels by the probes, which must be complete, unless that was done. `imported` (null: none):
-  /// objects that show its light get no blocks.
-  void plan(std::span<const LayerLight> layers, const ImportedLight* imported);
+  /// Chooses the texels by the probes, which must be complete, unless that was done. `kept` (null: none): its
+  /// blocks are to have room beside.
+  void plan(std::span<const LayerLight> layers, const KeptCharts* kept);
 
   /// Pieces [first, last); returns the first that was not done, for a stop was requested (at least one is).
   /// Same bits for any number of threads and any ranges. Needs a plan.
@@ -56,9 +56,10 @@ class DetailLight {
 
   /// Blocks with their borders, traced and completed. `indirect` by layer: what the atlas holds beside direct
   /// light, gutters filled; `irradiance` by layer: all that it holds. `kept` (null: none): blocks of its
-  /// charts stay as they were.
+  /// charts stay as they were. `imported` (null: none): objects that show its light have no blocks.
   core::MapDetail finish(std::span<const std::vector<Vec3>> indirect,
-                         std::span<const std::vector<Vec3>> irradiance, const KeptCharts* kept) const;
+                         std::span<const std::vector<Vec3>> irradiance, const KeptCharts* kept,
+                         const ImportedLight* imported) const;
 
  private:
   const World& world_;

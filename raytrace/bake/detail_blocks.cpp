@@ -12,6 +12,21 @@ namespace {
 
 constexpr std::uint32_t kNoBlock = ~0u;
 
+/// With their places in the earlier maps.
+std::vector<DetailTexel> keptBlocks(const TexelMap& texels, const KeptCharts& kept) {
+  const core::IlluminationMaps& before = *kept.previous;
+  std::vector<DetailTexel> out;
+  if (before.detail.height == 0) return out;
+  const auto size = static_cast<std::size_t>(texels.size()), width = static_cast<std::size_t>(before.width);
+  for (std::size_t t = 0; t < texels.texelCount(); ++t) {
+    const std::int32_t chart = texels.chartOf(t);
+    if (chart < 0 || !kept.keep[static_cast<std::size_t>(chart)]) continue;
+    const std::uint32_t packed = before.detail.blocks[t / size * width + t % size];
+    if (packed != 0) out.push_back({static_cast<std::uint32_t>(t), core::MapBlock::unpack(packed)});
+  }
+  return out;
+}
+
 }  // namespace
 
 const Vec3& CellBlock::nearest(int x, int y) const {
@@ -73,6 +88,12 @@ Vec3 betweenTexels(std::span<const Vec3> values, int size, const Plane2& positio
                   down);
 }
 
+std::size_t keptBlockTexels(const TexelMap& texels, const KeptCharts& kept) {
+  std::size_t sum = 0;
+  for (const DetailTexel& t : keptBlocks(texels, kept)) sum += t.block.texels();
+  return sum;
+}
+
 DetailAtlas::DetailAtlas(const TexelMap& texels, std::vector<DetailTexel> own, const KeptCharts* kept)
     : texels_(texels),
       kept_(kept),
@@ -80,27 +101,18 @@ DetailAtlas::DetailAtlas(const TexelMap& texels, std::vector<DetailTexel> own, c
       ownCount_(places_.size()),
       numbers_(texels.texelCount(), kNoBlock) {
   for (std::size_t b = 0; b < ownCount_; ++b) numbers_[places_[b].texel] = static_cast<std::uint32_t>(b);
-  if (kept) findKept();
+  if (kept) {
+    for (const DetailTexel& t : keptBlocks(texels, *kept)) {
+      places_.push_back(t);
+      before_.push_back(t.block);
+    }
+  }
   if (places_.empty()) return;
   pack();
   out_.blocks.resize(texels.texelCount());
   for (const DetailTexel& t : places_) {
     blocks_.emplace_back(t.block);
     out_.blocks[t.texel] = t.block.packed();
-  }
-}
-
-void DetailAtlas::findKept() {
-  const core::IlluminationMaps& before = *kept_->previous;
-  const auto size = static_cast<std::size_t>(texels_.size()), width = static_cast<std::size_t>(before.width);
-  for (std::size_t t = 0; t < texels_.texelCount(); ++t) {
-    const std::int32_t chart = texels_.chartOf(t);
-    if (chart < 0 || !kept_->keep[static_cast<std::size_t>(chart)] || before.detail.height == 0) continue;
-    const std::uint32_t packed = before.detail.blocks[t / size * width + t % size];
-    if (packed == 0) continue;
-    const core::MapBlock block = core::MapBlock::unpack(packed);
-    places_.push_back({static_cast<std::uint32_t>(t), block});
-    before_.push_back(block);
   }
 }
 

@@ -48,6 +48,9 @@ class CellBlock {
 /// Bilinear between the texels of a square atlas at a position in texels.
 Vec3 betweenTexels(std::span<const Vec3> values, int size, const Plane2& position);
 
+/// Of the blocks that charts keep, borders included.
+std::size_t keptBlockTexels(const TexelMap& texels, const KeptCharts& kept);
+
 /// All blocks of a bake, layer after layer: fill block(), then addLayer().
 class DetailAtlas {
  public:
@@ -64,7 +67,6 @@ class DetailAtlas {
  private:
   std::optional<Vec3> lightBeside(std::size_t texel, const Plane2& place,
                                   std::span<const Vec3> irradiance) const;
-  void findKept();
   void pack();
   void readKept(std::size_t b, int layer);
   void addBorder(std::size_t b, std::span<const Vec3> irradiance);

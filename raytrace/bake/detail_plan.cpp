@@ -31,6 +31,7 @@ MeanLight meanLight(const TexelMap& texels, std::span<const LayerLight> layers) 
   for (const LayerLight& layer : layers) {
     for (std::size_t t = 0; t < texels.texelCount(); ++t) {
       if (!(layer.open[t] > 0)) continue;
+      if (layer.keptCharts && (*layer.keptCharts)[static_cast<std::size_t>(texels.chartOf(t))]) continue;
       mean.area += layer.open[t];
       mean.irradiance += layer.open[t] * core::luminance(layer.direct[t].irradiance);
     }
@@ -94,9 +95,12 @@ class Neighbourhood {
 class TexelProbe {
  public:
   TexelProbe(const std::array<DirectLight, 2>& sets, std::size_t texel, int layer) {
-    for (int y = 0; y < kProbeSide; ++y) {
-      for (int x = 0; x < kProbeSide; ++x) {
-        for (const DirectLight& set : sets) add(set.at(texel, layer, {kProbeSide, kProbeSide, x, y}));
+    for (std::size_t i = 0; i < kCells; ++i) {
+      const TexelCell at{kProbeSide, kProbeSide, static_cast<int>(i) % kProbeSide,
+                         static_cast<int>(i) / kProbeSide};
+      for (std::size_t set = 0; set < sets.size(); ++set) {
+        const CellLight cell = sets[set].at(texel, layer, at);
+        light_[set][i] = cell.surface ? core::luminance(cell.light.irradiance) : std::nan("");
       }
     }
   }
@@ -126,11 +130,6 @@ class TexelProbe {
  private:
   static constexpr std::size_t kCells = std::size_t{kProbeSide} * kProbeSide;
 
-  void add(const CellLight& cell) {
-    std::vector<double>& set = light_[light_[0].size() > light_[1].size()];
-    set.push_back(cell.surface ? core::luminance(cell.light.irradiance) : std::nan(""));
-  }
-
   /// Of products of both sets' differences between `cells` cells in line; never negative.
   template <class Difference>
   double mean(std::size_t stride, Difference&& difference, std::size_t cells) const {
@@ -149,7 +148,7 @@ class TexelProbe {
     return count > 0 ? std::max(0.0, sum / count) : 0;
   }
 
-  std::array<std::vector<double>, 2> light_;  ///< luminance by cell; NaN: no surface
+  std::array<std::array<double, kCells>, 2> light_{};  ///< luminance by cell; NaN: no surface
 };
 
 /// Of one set of a probe.
@@ -217,7 +216,7 @@ class Prober {
 
 std::size_t texelsOf(int log2Columns, int log2Rows) {
   if (log2Columns == 0 && log2Rows == 0) return 0;
-  return ((std::size_t{1} << log2Columns) + 2) * ((std::size_t{1} << log2Rows) + 2);
+  return core::MapBlock{0, 0, log2Columns, log2Rows}.texels();
 }
 
 double missedBy(const EdgeProbe& p, int log2Columns, int log2Rows) {

@@ -41,6 +41,7 @@ struct EdgeProbe {
 struct LayerLight {
   std::span<const DirectEstimate> direct;
   std::span<const float> open;
+  const std::vector<char>* keptCharts = nullptr;  ///< by chart: `direct` was not found there; null: none
 };
 
 /// Probes all texels of `blocks` that may need cells; out[texel]. `options` as for directIrradiance. Same

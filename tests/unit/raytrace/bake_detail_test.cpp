@@ -72,8 +72,7 @@ std::size_t blockTexels(const core::MapDetail& detail) {
   std::size_t sum = 0;
   for (const std::uint32_t packed : detail.blocks) {
     if (packed == 0) continue;
-    const core::MapBlock block = core::MapBlock::unpack(packed);
-    sum += static_cast<std::size_t>((block.columns() + 2) * (block.rows() + 2));
+    sum += core::MapBlock::unpack(packed).texels();
   }
   return sum;
 }
@@ -185,6 +184,48 @@ TEST(BakeDetail, KeptChartsKeepTheirBlocks) {
   EXPECT_EQ(after.detail.texels, before.maps().detail.texels);
 }
 
+/// A floor of two halves, alike under a lamp over their common border and an edge across both.
+core::Scene halves(float edge) {
+  core::Scene scene = screened(edge);
+  SceneBuilder b;
+  b.quad(SceneBuilder::matte(0.5f), {-1, 0, -1}, {0, 0, 1}, {2, 0, 0});
+  b.quad(SceneBuilder::matte(0.5f), {-1, 0, 0}, {0, 0, 1}, {2, 0, 0});
+  b.patch(SceneBuilder::matte(0), 1, 1,
+          [&](float s, float t) { return Vec3(edge + 4 * s, kScreenHeight, 8 * t - 4); });
+  b.scene.lights = scene.lights;
+  b.scene.bounds.add(scene.bounds);
+  return b.scene;
+}
+
+/// Light is missing in what the bake knows of charts that are kept; blocks must not be dealt out by that.
+TEST(BakeDetail, KeptChartsNeitherRaiseTheWishNorTheMemory) {
+  const auto keepFirst = [](const Baked& before, BakeOptions o) {
+    const TexelMap texels(before.scene(), before.maps().width);
+    KeptCharts kept;
+    kept.previous = &before.maps();
+    kept.keep.assign(texels.charts().size(), 0);
+    for (std::size_t t = 0; t < texels.texelCount(); ++t) {
+      if (texels.chartOf(t) >= 0 && texels.fragments(t).front().object == 0)
+        kept.keep[static_cast<std::size_t>(texels.chartOf(t))] = 1;
+    }
+    o.kept = &kept;
+    return blockTexels(bakeMaps(before.world(), {}, before.maps().width, o, {}).detail);
+  };
+  constexpr float kEdge = 0.1007f;
+  BakeOptions fine = options(1'000'000);
+  fine.quality = "high";
+  const Baked wished(halves(kEdge), 32, fine);
+  const auto whole = static_cast<double>(blockTexels(wished.maps().detail));
+  ASSERT_GT(whole, 0);
+  EXPECT_NEAR(static_cast<double>(keepFirst(wished, fine)), whole, 0.05 * whole);
+
+  const Baked bounded(halves(kEdge), 32, options(1200));
+  ASSERT_GT(blockTexels(bounded.maps().detail), 600u);
+  const std::size_t again = keepFirst(bounded, options(1200));
+  EXPECT_LE(again, 1200u);
+  EXPECT_GT(again, 600u);
+}
+
 /// A cell in the foot of a wall sees half of the sky, one in the open all of it.
 TEST(BakeDetail, NearSurfacesPartTheHemisphereByTheCosine) {
   SceneBuilder b;
@@ -220,19 +261,54 @@ TEST(BakeDetail, NearSurfacesPartTheHemisphereByTheCosine) {
   EXPECT_GT(atWall, 10);
 }
 
-TEST(BakeDetail, ImportedLightIsNotHiddenByBlocks) {
+class BakeDetailImport : public testing::Test {
+ protected:
   core::Scene scene = screened(0.1007f, 0.6f);
-  scene.meshes[0].uv1 = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
   ImportedLight imported;
-  imported.images.emplace_back(1, 1);
-  imported.images[0].at(0, 0) = Vec3(3);
-  imported.imageOfObject.assign(scene.objects.size(), -1);
-  imported.imageOfObject[0] = 0;
+  void SetUp() override {
+    scene.meshes[0].uv1 = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    imported.images.emplace_back(1, 1);
+    imported.images[0].at(0, 0) = Vec3(3);
+    imported.imageOfObject.assign(scene.objects.size(), -1);
+    imported.imageOfObject[0] = 0;
+  }
+};
+
+TEST_F(BakeDetailImport, IsNotHiddenByBlocks) {
   BakeOptions o = options(5000);
   o.imported = &imported;
   const Baked baked(scene, 32, o);
   EXPECT_EQ(baked.irradiance(0, {0.2f, 0, 0}), Vec3(3));
   EXPECT_EQ(baked.maps().detail.height, 0);
+}
+
+/// What a job keeps for going on does not depend on imported light: only the quick end reads that.
+TEST_F(BakeDetailImport, MayComeWhenAJobGoesOn) {
+  scene = halves(0.1007f);
+  scene.meshes[0].uv1 = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+  const Baked without(scene, 32, options(5000));
+  BakeOptions o = options(5000);
+  o.imported = &imported;
+  const core::IlluminationMaps with = bakeMaps(without.world(), {}, without.maps().width, o, {});
+  ASSERT_LT(blockTexels(with.detail), blockTexels(without.maps().detail));
+  ASSERT_GT(blockTexels(with.detail), 0u);
+
+  BakeJob first(without.world(), without.maps().width, options(5000));
+  while (!first.advance({}, {})) {
+  }
+  BakeJob second(without.world(), without.maps().width, o);
+  for (std::size_t i = 0; i < second.stages().size(); ++i) {
+    BakeStage& to = second.stages()[i];
+    const BakeStage& from = first.stages()[i];
+    to.done = from.done;
+    ASSERT_EQ(to.results.size(), from.results.size());
+    std::copy(from.results.begin(), from.results.end(), to.results.begin());
+  }
+  EXPECT_TRUE(second.advance({}, {}));
+  const core::IlluminationMaps resumed = second.finish({}, {}, {});
+  EXPECT_EQ(resumed.texels, with.texels);
+  EXPECT_EQ(resumed.detail.blocks, with.detail.blocks);
+  EXPECT_EQ(resumed.detail.texels, with.detail.texels);
 }
 
 }  // namespace
