@@ -13,6 +13,12 @@ constexpr float kBelowOne = 0x1.fffffep-1f;
 
 unsigned tiles(int size, unsigned tile) { return (static_cast<unsigned>(size) + tile - 1) / tile; }
 
+/// Between columns x0, x1 and rows y0, y1 of the tiled order.
+MapFootprint footprintOf(std::uint32_t x0, std::uint32_t x1, std::uint32_t y0, std::uint32_t y1, float right,
+                         float down) {
+  return {{x0 + y0, x1 + y0, x0 + y1, x1 + y1}, right, down, false};
+}
+
 }  // namespace
 
 void World::setMaps(const core::IlluminationMaps* maps) {
@@ -69,8 +75,7 @@ std::uint32_t World::mapRow(unsigned y, int layer) const {
 }
 
 MapFootprint World::mapFootprint(const Vec2& uv, int layer) const {
-  MapFootprint f;
-  if (layer >= mapLayers_ || mapTexels_.empty()) return f;
+  if (layer >= mapLayers_ || mapTexels_.empty()) return {};
   // From the middle of the first texel, clamped to the atlas. Written so that NaN gives its edge.
   const auto inside = [](float v, int size) {
     const float last = static_cast<float>(size) * kBelowOne - 0.5f;
@@ -83,14 +88,7 @@ MapFootprint World::mapFootprint(const Vec2& uv, int layer) const {
   const std::uint32_t x1 = left + 1 < static_cast<unsigned>(mapWidth_) ? mapColumn(left + 1) : x0;
   const std::uint32_t y0 = mapRow(top, layer);
   const std::uint32_t y1 = top + 1 < static_cast<unsigned>(mapHeight_) ? mapRow(top + 1, layer) : y0;
-  f.at[0] = x0 + y0;
-  f.at[1] = x1 + y0;
-  f.at[2] = x0 + y1;
-  f.at[3] = x1 + y1;
-  f.right = x - static_cast<float>(left);
-  f.down = y - static_cast<float>(top);
-  f.dark = false;
-  return f;
+  return footprintOf(x0, x1, y0, y1, x - static_cast<float>(left), y - static_cast<float>(top));
 }
 
 /// The cells around the same point in the block of the texel that it lies in.
@@ -104,15 +102,7 @@ MapFootprint World::blockFootprint(const MapFootprint& f, std::uint32_t texel) c
   const auto left = static_cast<unsigned>(x), top = static_cast<unsigned>(y);
   const std::uint32_t x0 = mapColumn(left), x1 = mapColumn(left + 1);
   const std::uint32_t y0 = mapRow(mapDetailRow_ + top, layer), y1 = mapRow(mapDetailRow_ + top + 1, layer);
-  MapFootprint cells;
-  cells.at[0] = x0 + y0;
-  cells.at[1] = x1 + y0;
-  cells.at[2] = x0 + y1;
-  cells.at[3] = x1 + y1;
-  cells.right = x - static_cast<float>(left);
-  cells.down = y - static_cast<float>(top);
-  cells.dark = false;
-  return cells;
+  return footprintOf(x0, x1, y0, y1, x - static_cast<float>(left), y - static_cast<float>(top));
 }
 
 Vec2 World::cornerUv(std::uint32_t object, std::uint32_t triangle, int corner) const {

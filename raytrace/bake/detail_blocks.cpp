@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/math/bilinear.h"
 #include "raytrace/bake/map_half.h"
 
 namespace saccade::raytrace {
@@ -36,10 +37,7 @@ const Vec3& CellBlock::nearest(int x, int y) const {
 Vec3 CellBlock::between(const Plane2& place) const {
   const Plane2 p =
       glm::clamp(place * Plane2(columns_, rows_) - 0.5, Plane2(0), Plane2(columns_ - 1, rows_ - 1));
-  const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
-  const auto right = static_cast<float>(p.x - x), down = static_cast<float>(p.y - y);
-  return glm::mix(glm::mix(nearest(x, y), nearest(x + 1, y), right),
-                  glm::mix(nearest(x, y + 1), nearest(x + 1, y + 1), right), down);
+  return core::bilinear(p.x, p.y, [this](int x, int y) { return nearest(x, y); });
 }
 
 Vec3 CellBlock::beyond(int x, int y) const {
@@ -78,14 +76,10 @@ void CellBlock::fill(std::vector<char> filled) {
 
 Vec3 betweenTexels(std::span<const Vec3> values, int size, const Plane2& position) {
   const Plane2 p = glm::clamp(position - 0.5, Plane2(0), Plane2(size - 1));
-  const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
-  const auto right = static_cast<float>(p.x - x), down = static_cast<float>(p.y - y);
-  const auto at = [&](int column, int row) {
+  return core::bilinear(p.x, p.y, [&](int column, int row) {
     return values[static_cast<std::size_t>(std::min(row, size - 1)) * static_cast<std::size_t>(size) +
                   static_cast<std::size_t>(std::min(column, size - 1))];
-  };
-  return glm::mix(glm::mix(at(x, y), at(x + 1, y), right), glm::mix(at(x, y + 1), at(x + 1, y + 1), right),
-                  down);
+  });
 }
 
 std::size_t keptBlockTexels(const TexelMap& texels, const KeptCharts& kept) {

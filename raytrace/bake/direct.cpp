@@ -23,10 +23,7 @@ constexpr std::uint32_t kDirectStream = 0x64697265u;
 /// one, whatever triangles the texel holds. In a cell of a texel u is the place; none where no surface is.
 std::optional<MeshPoint> pointOf(const TexelMap& texels, std::size_t texel, const TexelCell& cell,
                                  const Vec2& u) {
-  if (!cell.whole()) {
-    const Plane2 place = (Plane2(cell.x, cell.y) + Plane2(u)) / Plane2(cell.columns, cell.rows);
-    return texels.pointAt(texel, texels.cornerOf(texel) + place);
-  }
+  if (!cell.whole()) return texels.pointIn(texel, cell, u);
   const std::span<const TexelFragment> parts = texels.fragments(texel);
   float below = 0, target = u.x * texels.area(texel);
   std::size_t i = 0;
@@ -49,7 +46,7 @@ class Integrator {
         front_(layer == 0),
         reach_(OpenArea::reach(texels, texel) / std::sqrt(static_cast<float>(cell.columns * cell.rows))),
         wholePoints_(options.wholePoints),
-        stream_(streamOf(options.alike ? TexelCell() : cell, layer)),
+        stream_(kDirectStream + static_cast<std::uint32_t>(layer) + (options.alike ? 0 : cell.number())),
         seed_(options.seed),
         counters_(counters) {}
 
@@ -81,11 +78,6 @@ class Integrator {
   }
 
  private:
-  static std::uint32_t streamOf(const TexelCell& cell, int layer) {
-    const int number = cell.whole() ? 0 : ((cell.columns + cell.x) << 16) + ((cell.rows + cell.y) << 1);
-    return kDirectStream + static_cast<std::uint32_t>(number + layer);
-  }
-
   /// A point of the texel, shadow rays to the lights and, for what they find badly, a ray by the cosine.
   void sample() {
     core::PixelSampler random(static_cast<std::uint32_t>(texel_), stream_, tried_++, seed_);

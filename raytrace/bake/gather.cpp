@@ -166,18 +166,15 @@ NearLight nearLight(const World& world, const TexelMap& texels, std::size_t texe
                     int layer, float reach, const TexelLight& source, const GatherOptions& options) {
   RayCounters own;
   RayCounters& counters = options.counters ? *options.counters : own;
-  const auto number =
-      static_cast<std::uint32_t>(((cell.columns + cell.x) << 16) + ((cell.rows + cell.y) << 1));
+  const std::uint32_t stream = kNearStream + cell.number() + static_cast<std::uint32_t>(layer);
   NearLight out;
   glm::dvec3 sum(0);
   int count = 0, near = 0;
   for (int i = 0; i < kMostTries * options.rays && count < options.rays; ++i) {
-    core::PixelSampler random(kNearStream + number + static_cast<std::uint32_t>(layer),
-                              static_cast<std::uint32_t>(texel), static_cast<std::uint64_t>(i), options.seed);
+    core::PixelSampler random(stream, static_cast<std::uint32_t>(texel), static_cast<std::uint64_t>(i),
+                              options.seed);
     const Vec2 u = random.next2D(), place = random.next2D();
-    const std::optional<MeshPoint> at =
-        texels.pointAt(texel, texels.cornerOf(texel) +
-                                  (Plane2(cell.x, cell.y) + Plane2(place)) / Plane2(cell.columns, cell.rows));
+    const std::optional<MeshPoint> at = texels.pointIn(texel, cell, place);
     if (!at) continue;
     const std::uint32_t triangle = world.firstTriangle(at->object) + at->triangle;
     const Surface from = surfaceOn(world, at->object, triangle, at->b1, at->b2, layer == 0);

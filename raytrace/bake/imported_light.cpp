@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/math/bilinear.h"
 #include "raytrace/parallel_rows.h"
 
 namespace saccade::raytrace {
@@ -24,15 +25,10 @@ float mirrored(int i) {
 Vec3 bilinear(const core::ImageRgb& image, Vec2 uv) {
   for (int axis = 0; axis < 2; ++axis)
     if (uv[axis] < 0 || uv[axis] > 1) uv[axis] -= std::floor(uv[axis]);
-  const float x = uv.x * static_cast<float>(image.width()) - 0.5f,
-              y = uv.y * static_cast<float>(image.height()) - 0.5f;
-  const int left = static_cast<int>(std::floor(x)), top = static_cast<int>(std::floor(y));
-  const auto at = [&](int column, int row) {
+  const Vec2 p = uv * Vec2(image.width(), image.height()) - 0.5f;
+  return core::bilinear(p.x, p.y, [&](int column, int row) {
     return image.at(std::clamp(column, 0, image.width() - 1), std::clamp(row, 0, image.height() - 1));
-  };
-  const float fx = x - static_cast<float>(left), fy = y - static_cast<float>(top);
-  return glm::mix(glm::mix(at(left, top), at(left + 1, top), fx),
-                  glm::mix(at(left, top + 1), at(left + 1, top + 1), fx), fy);
+  });
 }
 
 Vec2 lightmapUv(const core::Mesh& mesh, const MeshPoint& p) {

@@ -43,6 +43,10 @@ struct TexelCover {
 struct TexelCell {
   int columns = 1, rows = 1, x = 0, y = 0;
   bool whole() const { return columns == 1 && rows == 1; }
+  /// Keeps the random numbers of cells apart: 0 for the whole texel; even, the last bit is for the layer.
+  std::uint32_t number() const {
+    return whole() ? 0 : static_cast<std::uint32_t>(((columns + x) << 16) + ((rows + y) << 1));
+  }
 };
 
 /// A point of a charted mesh.
@@ -78,6 +82,11 @@ class TexelMap {
   std::uint32_t vertexTexel(std::size_t object, std::size_t corner) const;
   /// The point at a position of the atlas, in texels, that lies in the texel; none where no surface is.
   std::optional<MeshPoint> pointAt(std::size_t texel, const Plane2& position) const;
+  /// The point at u in [0, 1)^2 of a cell of the texel; none where no surface is.
+  std::optional<MeshPoint> pointIn(std::size_t texel, const TexelCell& cell, const core::Vec2& u) const {
+    const Plane2 place = (Plane2(cell.x, cell.y) + Plane2(u)) / Plane2(cell.columns, cell.rows);
+    return pointAt(texel, cornerOf(texel) + place);
+  }
   /// Its corner in the atlas, in texels.
   Plane2 cornerOf(std::size_t texel) const {
     const std::size_t size = static_cast<std::size_t>(size_), row = texel / size;
