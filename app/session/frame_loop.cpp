@@ -3,26 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/composite.h"
-
 namespace saccade::app {
 
 namespace {
-
-/// Adds the time of its scope to one stage.
-class StageTimer {
- public:
-  StageTimer(RunStats& stats, const char* stage) : total_(stats.stageMs[stage]) {}
-  ~StageTimer() {
-    total_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 constexpr std::chrono::milliseconds kStopPollInterval{20};
 constexpr int kLateBatches = 32;  // some tenths of a millisecond of splatting
@@ -32,17 +15,24 @@ attention::AttentionOptions seeded(attention::AttentionOptions options, std::uin
   return options;
 }
 
+PictureSettings settingsOf(const FrameLoopOptions& o) {
+  return {.aging = o.corrective.aging,
+          .delta = o.corrective.delta,
+          .nMin = o.corrective.nMin,
+          .maxAge = o.corrective.maxAge,
+          .cacheMb = o.corrective.cacheMb,
+          .exposureEv = o.exposureEv};
+}
+
 }  // namespace
 
 FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer,
                      const FrameLoopOptions& options)
-    : workspace_(workspace),
-      renderer_(renderer),
-      options_(options),
+    : options_(options),
       regions_(options.corrective.jobSize),
       tracer_(*workspace.world,
               {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
-      cache_(static_cast<std::size_t>(options.corrective.cacheMb) << 20),
+      picture_(workspace.scene, renderer, settingsOf(options), stats_),
       analyzer_(seeded(options.corrective.attention, options.seed)),
       pool_(tracer_, regions_, samples_, options.threads) {
   stats_.seed = options.seed;
@@ -62,55 +52,33 @@ void FrameLoop::step(const core::Camera& camera, ImageSize size, const FrameBudg
   pool_.check();
   analyzer_.check();
   const std::uint64_t tracedBefore = stats_.samplesTraced;
-  if (cameraChanged(camera, size)) beginFrame(camera, size);
+  const bool newView = !picture_.shows(camera, size);
+  if (newView) beginFrame(camera, size);
   {
     const StageTimer timer(stats_, "correct");
     correct(start, budget, stop);
   }
   const Clock::time_point tail = Clock::now();
-  composite();
+  picture_.composite();
   feedAnalyzer();
+  record(newView);
   tailSeconds_ = 0.8 * tailSeconds_ + 0.2 * std::chrono::duration<double>(Clock::now() - tail).count();
   stats_.samplesPerFrame.push_back(stats_.samplesTraced - tracedBefore);
   finishStats(start, budget);
 }
 
-bool FrameLoop::cameraChanged(const core::Camera& camera, ImageSize size) const {
-  return !frame_ || !frame_->view.camera().samePicture(camera) || frame_->view.width() != size.width ||
-         frame_->view.height() != size.height;
-}
-
 // Steps 2 to 5. Steps 3 and 4 do not run while nothing moves (design fact 14).
 void FrameLoop::beginFrame(const core::Camera& camera, ImageSize size) {
-  const core::View view(camera, size.width, size.height, workspace_.scene.bounds);
-  const CorrectiveOptions& o = options_.corrective;
   dropPending();
-  {
-    const StageTimer timer(stats_, "age");
-    stats_.samplesDropped += cache_.age(view, {o.nMin, o.delta, o.maxAge}).deleted;
-  }
-  {
-    const StageTimer timer(stats_, "draw");
-    frame_ = renderer_.render(view, cache_.cameraAge(), o.nMin);
-  }
-  {
-    const StageTimer timer(stats_, "warp");
-    layer_.beginFrame(frame_);
-    if (reuse_) {
-      const render::SampleCache::WarpResult warped = cache_.warp(*frame_, layer_);
-      stats_.samplesReused += warped.splatted;
-      stats_.samplesDropped += warped.dropped;
-    }
-  }
+  picture_.begin(camera, size);
   if (!options_.asynchronousAnalysis) analyseNow();
-  regions_.beginFrame(frame_);
+  regions_.beginFrame(picture_.frame());
 }
 
 void FrameLoop::analyseNow() {
-  composite();
+  picture_.composite();
   const StageTimer timer(stats_, "analyse");
-  regions_.setPriorities(analyzer_.analyzeNow({frame_, display_}));
-  displayIsShared_ = true;
+  regions_.setPriorities(analyzer_.analyzeNow({picture_.frame(), picture_.shareDisplay()}));
 }
 
 void FrameLoop::correct(Clock::time_point start, const FrameBudget& budget, const std::stop_token& stop) {
@@ -129,7 +97,7 @@ void FrameLoop::correctUntil(Clock::time_point deadline, const std::stop_token& 
     const Clock::time_point now = Clock::now();
     auto batch =
         now < deadline ? samples_.popUntil(std::min(deadline, now + kStopPollInterval)) : samples_.tryPop();
-    if (batch) take(*batch);
+    if (batch) take(std::move(*batch));
     if (now >= deadline) late = batch ? late + 1 : kLateBatches;
   }
 }
@@ -140,14 +108,14 @@ void FrameLoop::correctInline(const FrameBudget& budget, const std::stop_token& 
   const auto raysAllowed = static_cast<std::uint64_t>(budget.time.count() * kVirtualRaysPerSecond);
   const std::uint64_t raysBefore = pool_.rays();
   while (!stop.stop_requested() && (!timed || pool_.rays() - raysBefore < raysAllowed) && pool_.runOne()) {
-    while (auto batch = samples_.tryPop()) take(*batch);
+    while (auto batch = samples_.tryPop()) take(std::move(*batch));
   }
 }
 
 // Step 6 until every pixel on the mask is exact.
 void FrameLoop::correctAll(const std::stop_token& stop) {
-  while (!layer_.converged() && !stop.stop_requested()) {
-    if (auto batch = samples_.popUntil(Clock::now() + kStopPollInterval)) take(*batch);
+  while (!converged() && !stop.stop_requested()) {
+    if (auto batch = samples_.popUntil(Clock::now() + kStopPollInterval)) take(std::move(*batch));
     pool_.check();
   }
 }
@@ -157,11 +125,11 @@ void FrameLoop::correctAll(const std::stop_token& stop) {
 // fact 10).
 void FrameLoop::correctSamples(std::uint64_t count, const std::stop_token& stop) {
   std::uint64_t taken = takeInOrder(count);
-  while (taken < count && !layer_.converged() && !stop.stop_requested()) {
+  while (taken < count && !converged() && !stop.stop_requested()) {
     if (options_.threads == 0) pool_.runOne();
     auto batch = samples_.popUntil(Clock::now() + kStopPollInterval);
     pool_.check();
-    if (!batch || batch->epoch != frame_->epoch) continue;
+    if (!batch || batch->epoch != frame().epoch) continue;
     pending_.emplace(batch->sequence, std::move(*batch));
     taken += takeInOrder(count - taken);
   }
@@ -176,7 +144,7 @@ std::uint64_t FrameLoop::takeInOrder(std::uint64_t atMost) {
     std::vector<core::Sample>& samples = it->second.samples;
     const auto cut = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(atMost - taken, samples.size()));
     core::SampleBatch head{it->second.epoch, it->second.sequence, {samples.begin(), samples.begin() + cut}};
-    take(head);
+    take(std::move(head));
     taken += static_cast<std::uint64_t>(cut);
     samples.erase(samples.begin(), samples.begin() + cut);
     if (!samples.empty()) break;
@@ -192,49 +160,33 @@ void FrameLoop::dropPending() {
   nextSequence_ = 0;
 }
 
-void FrameLoop::take(core::SampleBatch& batch) {
+void FrameLoop::take(core::SampleBatch&& batch) {
   if (onBatch) onBatch(batch);
-  if (batch.epoch == frame_->epoch) {
-    for (const core::Sample& sample : batch.samples) {
-      layer_.splat(sample);
-      ++stats_.levels[sample.level];
-      stats_.fromDepth += sample.fromDepth ? 1 : 0;
-    }
-    stats_.samplesTraced += batch.samples.size();
-  }
-  // Samples for an older frame are never exact; they wait in the cache for the next camera change (design
-  // fact 6).
-  cache_.add(batch, batch.epoch);
-}
-
-// Step 7.
-void FrameLoop::composite() {
-  const StageTimer timer(stats_, "composite");
-  if (!display_ || displayIsShared_) display_ = std::make_shared<core::ImageRgba8>();
-  displayIsShared_ = false;
-  const auto corrections = showCorrections_ ? layer_.pixels() : std::span<const core::Vec4>{};
-  core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections,
-                         options_.exposureEv, *display_);
+  picture_.take(batch);
+  if (!sink_) return;
+  const StageTimer timer(stats_, "record");
+  sink_->batch(std::move(batch));
 }
 
 // Step 8. The analyzer keeps the picture, so the next composite goes into a new one.
 void FrameLoop::feedAnalyzer() {
   if (!options_.asynchronousAnalysis || !mailbox_.wanted()) return;
-  mailbox_.put({frame_, display_});
-  displayIsShared_ = true;
+  mailbox_.put({picture_.frame(), picture_.shareDisplay()});
 }
 
-core::ImageRgb FrameLoop::linear() {
-  return core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId,
-                               layer_.pixels());
+void FrameLoop::record(bool newView) {
+  if (!sink_) return;
+  const StageTimer timer(stats_, "record");
+  sink_->frame({picture_.frame(), newView, picture_.settings(),
+                static_cast<float>(options_.corrective.attention.attention), picture_.shareDisplay()});
 }
 
 void FrameLoop::finishStats(Clock::time_point start, const FrameBudget& budget) {
   const std::chrono::duration<double> taken = Clock::now() - start;
   stats_.frameMs.push_back(1000 * taken.count());
   if (budget.missedAfter(taken)) ++stats_.missedDeadlines;
-  stats_.nonDiffusePixels = frame_->nonDiffusePixels;
-  stats_.converged = layer_.converged();
+  stats_.nonDiffusePixels = frame().nonDiffusePixels;
+  stats_.converged = converged();
   stats_.rays = pool_.rays();
   stats_.tracingSeconds = stats_.stageMs["correct"] / 1000;
 }

@@ -11,6 +11,8 @@
 #include <span>
 
 #include "app/cli/options.h"
+#include "app/session/corrected_picture.h"
+#include "app/session/session_sink.h"
 #include "app/session/stats.h"
 #include "app/session/workspace.h"
 #include "attention/analyzer.h"
@@ -20,8 +22,6 @@
 #include "raytrace/corrective_tracer.h"
 #include "raytrace/tracer_pool.h"
 #include "render/base/base_renderer.h"
-#include "render/splat/correction_layer.h"
-#include "render/splat/sample_cache.h"
 
 namespace saccade::app {
 
@@ -70,30 +70,36 @@ class FrameLoop {
   void step(const core::Camera& camera, ImageSize size, const FrameBudget& budget,
             const std::stop_token& stop = {});
 
-  const core::ImageRgba8& display() const { return *display_; }  ///< of the last step
-  core::ImageRgb linear();                                       ///< base + correction of the last step
-  const core::FrameSnapshot& frame() const { return *frame_; }
+  const core::ImageRgba8& display() const { return picture_.display(); }  ///< of the last step
+  core::ImageRgb linear() { return picture_.linear(); }  ///< base + correction of the last step
+  const core::FrameSnapshot& frame() const { return *picture_.frame(); }
   /// What the picture adds to the base: width * height; valid until the next step.
-  std::span<const core::Vec4> corrections() { return layer_.pixels(); }
+  std::span<const core::Vec4> corrections() { return picture_.layer().pixels(); }
   /// Whether the next step with this camera goes on with the picture of the last one.
-  bool rests(const core::Camera& camera, ImageSize size) const { return !cameraChanged(camera, size); }
+  bool rests(const core::Camera& camera, ImageSize size) const { return picture_.shows(camera, size); }
   const raytrace::CorrectiveTracer& tracer() const { return tracer_; }
-  const render::CorrectionLayer& layer() const { return layer_; }
-  const render::SampleCache& cache() const { return cache_; }
+  const render::CorrectionLayer& layer() const { return picture_.layer(); }
+  const render::SampleCache& cache() const { return picture_.cache(); }
   const attention::Analyzer& analyzer() const { return analyzer_; }
   const RunStats& stats() const { return stats_; }
-  bool converged() const { return layer_.converged(); }
+  bool converged() const { return layer().converged(); }
 
   /// Weight between saliency (0) and task (1), from the window's slider.
-  void setAttention(float weight) { analyzer_.setAttention(weight); }
-  void setExposure(float ev) { options_.exposureEv = ev; }
-  void setDelta(float delta) { options_.corrective.delta = delta; }
+  void setAttention(float weight) {
+    analyzer_.setAttention(weight);
+    options_.corrective.attention.attention = weight;
+  }
+  void setExposure(float ev) { picture_.settings().exposureEv = ev; }
+  void setDelta(float delta) { picture_.settings().delta = delta; }
   /// Off: the base layer alone is shown; samples go on being traced.
-  void showCorrections(bool on) { showCorrections_ = on; }
+  void showCorrections(bool on) { picture_.settings().corrections = on; }
   /// Off: every frame starts without the samples of earlier ones.
-  void reuseSamples(bool on) { reuse_ = on; }
+  void reuseSamples(bool on) { picture_.settings().reuse = on; }
   /// The next step draws again although the camera did not move.
-  void invalidate() { frame_ = nullptr; }
+  void invalidate() { picture_.invalidate(); }
+
+  /// From the first step on, `sink` hears of everything that pictures depend on; it must outlive the loop.
+  void recordTo(SessionSink& sink) { sink_ = &sink; }
 
   /// Called for each batch as it arrives, before it is splatted: tests perturb, shuffle and count through it.
   std::function<void(core::SampleBatch&)> onBatch;
@@ -101,7 +107,6 @@ class FrameLoop {
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool cameraChanged(const core::Camera& camera, ImageSize size) const;
   void beginFrame(const core::Camera& camera, ImageSize size);
   void analyseNow();
   void correct(Clock::time_point start, const FrameBudget& budget, const std::stop_token& stop);
@@ -111,28 +116,21 @@ class FrameLoop {
   void correctAll(const std::stop_token& stop);
   std::uint64_t takeInOrder(std::uint64_t atMost);
   void dropPending();
-  void take(core::SampleBatch& batch);
-  void composite();
+  void take(core::SampleBatch&& batch);
   void feedAnalyzer();
+  void record(bool newView);
   void finishStats(Clock::time_point start, const FrameBudget& budget);
 
-  const Workspace& workspace_;
-  render::BaseRenderer& renderer_;
   FrameLoopOptions options_;
-  bool showCorrections_ = true;
-  bool reuse_ = true;
+  SessionSink* sink_ = nullptr;
 
   core::RegionQueue regions_;
   core::SampleQueue samples_;
   core::SnapshotMailbox mailbox_;
   raytrace::CorrectiveTracer tracer_;
-  render::CorrectionLayer layer_;
-  render::SampleCache cache_;
   RunStats stats_;
-  core::FramePtr frame_;
-  std::shared_ptr<core::ImageRgba8> display_;
-  bool displayIsShared_ = false;  ///< the analyzer may be reading display_
-  double tailSeconds_ = 0;        ///< running mean of steps 7 and 8, kept free of the deadline
+  CorrectedPicture picture_;
+  double tailSeconds_ = 0;  ///< running mean of steps 7 and 8, kept free of the deadline
   std::map<std::uint64_t, core::SampleBatch>
       pending_;                     ///< sample budget: batches of this frame not yet taken
   std::uint64_t nextSequence_ = 0;  ///< sample budget: the batch to take next

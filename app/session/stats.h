@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -33,6 +34,21 @@ struct RunStats {
 
   /// p in [0, 1], nearest rank; 0 without frames.
   double framePercentileMs(double p) const;
+};
+
+/// Adds the time of its scope to one stage.
+class StageTimer {
+ public:
+  StageTimer(RunStats& stats, const char* stage) : total_(stats.stageMs[stage]) {}
+  ~StageTimer() {
+    total_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  double& total_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Peak resident memory of this process in bytes; 0 where the system does not tell.

@@ -1,0 +1,79 @@
+// What a walk shows, given its samples: steps 2 to 5 and 7 of Haber 2001, section 4.1. Nothing else decides
+// what a pixel shows and no ray is traced here, so the same calls give the same pictures: a replay makes
+// those that a walk recorded.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "app/cli/options.h"
+#include "app/session/stats.h"
+#include "core/corrective/messages.h"
+#include "core/image.h"
+#include "core/scene/scene.h"
+#include "render/base/base_renderer.h"
+#include "render/splat/correction_layer.h"
+#include "render/splat/sample_cache.h"
+
+namespace saccade::app {
+
+/// All settings that a picture depends on. Those the cache is made with hold for a whole walk, the others may
+/// change from frame to frame.
+struct PictureSettings {
+  AgingTest aging = AgingTest::haber;
+  float delta = 0.1f;
+  int nMin = 10;
+  int maxAge = 30;
+  int cacheMb = 64;  ///< of the whole walk
+  float exposureEv = 0;
+  bool corrections = true;  ///< off: the base layer alone is shown; samples go on being taken
+  bool reuse = true;        ///< off: every frame starts without the samples of earlier ones
+
+  bool operator==(const PictureSettings&) const = default;
+};
+
+/// Main thread only. Counts and times go to `stats`.
+class CorrectedPicture {
+ public:
+  CorrectedPicture(const core::Scene& scene, render::BaseRenderer& renderer, const PictureSettings& settings,
+                   RunStats& stats);
+
+  PictureSettings& settings() { return settings_; }
+  const PictureSettings& settings() const { return settings_; }
+
+  /// Whether a frame with this camera goes on with the picture of the last one.
+  bool shows(const core::Camera& camera, ImageSize size) const;
+  /// The next camera is a new one although it may be the same.
+  void invalidate() { frame_ = nullptr; }
+  /// Steps 2 to 5, for a new camera: aging, base layer, read-back, warp.
+  void begin(const core::Camera& camera, ImageSize size);
+  /// Splats what was traced for this frame, and caches it. Samples for an older frame are never exact; they
+  /// wait in the cache for the next camera change (design fact 6). No batch may be of a later epoch than the
+  /// frame's.
+  void take(const core::SampleBatch& batch);
+  /// Step 7.
+  void composite();
+
+  const core::FramePtr& frame() const { return frame_; }         ///< null before the first begin
+  const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite
+  /// The same for another thread: the next composite goes into another image.
+  std::shared_ptr<const core::ImageRgba8> shareDisplay();
+  core::ImageRgb linear();  ///< base + correction as they are now
+  render::CorrectionLayer& layer() { return layer_; }
+  const render::CorrectionLayer& layer() const { return layer_; }
+  render::SampleCache& cache() { return cache_; }
+  const render::SampleCache& cache() const { return cache_; }
+
+ private:
+  const core::Scene& scene_;
+  render::BaseRenderer& renderer_;
+  PictureSettings settings_;
+  RunStats& stats_;
+  render::CorrectionLayer layer_;
+  render::SampleCache cache_;
+  core::FramePtr frame_;
+  std::shared_ptr<core::ImageRgba8> display_;
+  bool displayIsShared_ = false;  ///< another thread may be reading display_
+};
+
+}  // namespace saccade::app
