@@ -120,6 +120,11 @@ void addRunOptions(CLI::App& command, RunOptions& o) {
   command.add_option("--stats", o.statsFile, "Write counts and times to this JSON file")->group(group);
 }
 
+const std::map<std::string, AgingTest>& agingTests() {
+  static const std::map<std::string, AgingTest> kTests{{"haber", AgingTest::haber}};
+  return kTests;
+}
+
 void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
   const std::string group = "Corrections";
   using attention::Order;
@@ -141,7 +146,7 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->group(group);
   command
       .add_option("--aging", o.aging, "Test that cached samples must pass: haber, the paper's section 4.5")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, AgingTest>{{"haber", AgingTest::haber}}))
+      ->transform(CLI::CheckedTransformer(agingTests()))
       ->option_text("NAME [haber]")
       ->group(group);
   command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ struct RunOptions {
 enum class AgingTest {
   haber  ///< the paper's section 4.5
 };
+
+/// By their names on the command line and in recorded sessions.
+const std::map<std::string, AgingTest>& agingTests();
 
 struct CorrectiveOptions {
   attention::AttentionOptions attention;

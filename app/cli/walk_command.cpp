@@ -1,4 +1,6 @@
 // saccade walk: the viewer, in a window or off screen.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +11,7 @@
 #include "app/cli/options.h"
 #include "app/cli/walk_options.h"
 #include "app/commands.h"
+#include "app/recording/session_recorder.h"
 #include "app/session/camera_path.h"
 #include "app/session/frame_loop.h"
 #include "app/session/headless.h"
@@ -54,34 +57,60 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
   const std::stop_token stop = interruptToken();
   Headless gl(o.run, workspace);
   const int threads = tracerThreads(o.run);
+  const auto recorder = makeRecorder(o, workspace, *gl.context);
   FrameLoop loop(workspace, *gl.renderer,
                  {o.corrective, threads, o.run.seed, o.run.exposureEv, threads > 0 && !o.samples});
+  if (recorder) loop.recordTo(*recorder);
   if (!o.framesFolder.empty()) std::filesystem::create_directories(o.framesFolder);
   ProgressBar bar("walking");
   for (int i = 0; i < frames && !stop.stop_requested(); ++i) {
+    if (recorder) recorder->setSeconds(i / o.fps);
     loop.step(path.at(i / o.fps), o.size, budgetOf(o), stop);
     if (!o.framesFolder.empty()) writeFrame(o, i, loop.display());
     bar.show((i + 1.0) / frames);
   }
-  if (o.converge && !stop.stop_requested())
+  if (o.converge && !stop.stop_requested()) {
+    if (recorder) recorder->setSeconds(frames / o.fps);
     loop.step(loop.frame().view.camera(), o.size, FrameBudget::untilConverged(), stop);
+  }
   if (!o.output.empty()) writeLast(o, loop);
   RunStats stats = loop.stats();
   stats.context = gl.context->name();
   stats.renderer = gl.context->renderer();
   report(stats);
   if (!o.run.statsFile.empty()) writeStats(o.run.statsFile, stats);
-  return 0;
+  return finishRecording(recorder.get(), o.record);
 }
 
 int walk(const WalkOptions& o) {
-  const auto workspace = openWorkspace(
-      o.scene, {.threads = std::max(1, tracerThreads(o.run)), .seed = o.run.seed}, interruptToken());
+  const auto workspace = openWorkspace(o.scene, bakeOf(o), interruptToken());
   if (o.headless) return walkHeadless(o, *workspace);
   return runViewer(o, *workspace);
 }
 
 }  // namespace
+
+BakeRequest bakeOf(const WalkOptions& o) {
+  return {.threads = std::max(1, tracerThreads(o.run)), .seed = o.run.seed};
+}
+
+std::unique_ptr<SessionRecorder> makeRecorder(const WalkOptions& o, const Workspace& workspace,
+                                              const render::GlContext& context) {
+  if (o.record.empty()) return nullptr;
+  const std::filesystem::path maps = mapsPath(workspace.maps.key, o.scene, bakeOf(o));
+  return std::make_unique<SessionRecorder>(o.record,
+                                           describeSession(o.scene, maps, workspace, o.run, o.corrective,
+                                                           {context.name(), context.renderer(), cpuName()}));
+}
+
+int finishRecording(SessionRecorder* recorder, const std::string& file) {
+  if (!recorder) return 0;
+  const SessionRecorder::Outcome outcome = recorder->finish();
+  if (!outcome.complete) return 1;
+  spdlog::info("recorded {} frames and {} samples into {}: saccade replay shows them", outcome.frames,
+               outcome.samples, file);
+  return 0;
+}
 
 void writeLast(const WalkOptions& o, FrameLoop& loop) {
   if (std::filesystem::path(o.output).extension() == ".exr") {
@@ -108,6 +137,11 @@ void addWalkCommand(CLI::App& program, Run& run) {
   command->add_option("--seconds", o->seconds, "Length of the walk (default: the path's)")
       ->check(CLI::PositiveNumber);
   command->add_option("--frames", o->framesFolder, "Write every frame to this folder as PNG");
+  command
+      ->add_option("--record", o->record,
+                   "Record cameras, samples, settings and picture hashes into this SQLite file; an earlier "
+                   "recording of that name is replaced")
+      ->option_text("FILE");
   command->add_option("-o,--output", o->output, "Write the last frame: .exr (linear) or .png");
   command->add_flag("--converge", o->converge, "After the walk, rest until every non-diffuse pixel is exact");
   command->add_option("--budget-ms", o->budgetMs, "Milliseconds a frame, instead of --fps")

@@ -1,14 +1,18 @@
 // What `saccade walk` was asked for, shared by its two forms.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "app/cli/options.h"
+#include "app/session/workspace.h"
+#include "render/context/gl_context.h"
 
 namespace saccade::app {
 
 class FrameLoop;
+class SessionRecorder;
 
 inline constexpr double kOrbitPeriodSeconds = 12;
 
@@ -24,6 +28,7 @@ struct WalkOptions {
   double fps = 25;
   std::optional<double> seconds;
   std::string framesFolder;
+  std::string record;
   std::string output;
   bool converge = false;
   std::optional<double> budgetMs;
@@ -32,6 +37,15 @@ struct WalkOptions {
   std::optional<double> exitAfterSeconds;
   std::string overlay;
 };
+
+/// What both forms open a scene with.
+BakeRequest bakeOf(const WalkOptions& options);
+
+/// What --record asked for, or null. Throws core::Error when the file is there and no recording.
+std::unique_ptr<SessionRecorder> makeRecorder(const WalkOptions& options, const Workspace& workspace,
+                                              const render::GlContext& context);
+/// Closes the recording and says what became of it. The walk's exit status: 1 where it is incomplete.
+int finishRecording(SessionRecorder* recorder, const std::string& file);
 
 /// Writes the last frame to options.output, linear or as displayed after its extension.
 void writeLast(const WalkOptions& options, FrameLoop& loop);

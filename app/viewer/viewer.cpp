@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "app/cli/console.h"
+#include "app/recording/session_recorder.h"
 #include "app/session/camera_path.h"
 #include "app/session/headless.h"
 #include "app/session/live_error.h"
@@ -43,11 +44,13 @@ class Viewer {
         renderer_(window_.context(), workspace.scene),
         presenter_(window_.context()),
         imgui_(window_),
+        recorder_(makeRecorder(options, workspace, window_.context())),
         loop_(workspace, renderer_,
               {options.corrective, std::max(1, tracerThreads(options.run)), options.run.seed,
                options.run.exposureEv, true}),
         home_(chooseCamera(workspace.scene, options.camera)),
         walker_(home_, workspace.scene.bounds.diagonal()) {
+    if (recorder_) loop_.recordTo(*recorder_);
     liveError_.emplace(tracedBy(loop_.tracer()));
     renderer_.setMaps(&workspace.maps);
     if (!options.path.empty()) path_ = CameraPath::read(options.path);
@@ -72,6 +75,8 @@ class Viewer {
     return stats;
   }
 
+  SessionRecorder* recorder() { return recorder_.get(); }
+
  private:
   void frame() {
     const Clock::time_point start = Clock::now();
@@ -88,6 +93,7 @@ class Viewer {
     observeRest(size);
     const double before = secondsSince(start);
     const double budget = std::max(1e-3, 1 / panel_.fps - before - presentSeconds_);
+    if (recorder_) recorder_->setSeconds(secondsSince(start_));
     loop_.step(walker_.camera(), size, FrameBudget::untilDeadline(std::chrono::duration<double>(budget)));
     pictureSeconds_ = secondsSince(restStart_);
     const Clock::time_point shown = Clock::now();
@@ -222,7 +228,8 @@ class Viewer {
   render::BaseRenderer renderer_;
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
-  std::optional<LiveError> liveError_;  ///< above the loop: its idle thread ends once the tracers have
+  std::optional<LiveError> liveError_;         ///< above the loop: its idle thread ends once the tracers have
+  std::unique_ptr<SessionRecorder> recorder_;  ///< null without --record
   FrameLoop loop_;
   core::Camera home_;
   Walker walker_;
@@ -242,9 +249,10 @@ class Viewer {
 
 int runViewer(const WalkOptions& options, const Workspace& workspace) {
   render::setSoftwareRasterThreads(rasterThreads(std::max(1, tracerThreads(options.run))));
-  const RunStats stats = Viewer(options, workspace).run();
+  Viewer viewer(options, workspace);
+  const RunStats stats = viewer.run();
   if (!options.run.statsFile.empty()) writeStats(options.run.statsFile, stats);
-  return 0;
+  return finishRecording(viewer.recorder(), options.record);
 }
 
 }  // namespace saccade::app
