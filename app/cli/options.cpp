@@ -7,12 +7,15 @@
 #include <thread>
 
 #include "core/error.h"
+#include "raytrace/bake/quality.h"
 
 namespace saccade::app {
 
 void addSceneOptions(CLI::App& command, SceneOptions& o) {
   const std::string group = "Scene";
   command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
+  std::vector<std::string> qualities;
+  for (const raytrace::Quality& q : raytrace::qualities()) qualities.emplace_back(q.name);
   command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")
       ->group(group);
   command
@@ -20,7 +23,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
           "--quality", o.quality,
           "Quality of the maps when they have to be baked: wished for are errors of 10 %, 5 % or 2 % of the "
           "mean light")
-      ->check(CLI::IsMember({"preview", "medium", "high"}))
+      ->check(CLI::IsMember(qualities))
       ->capture_default_str()
       ->group(group);
   command

@@ -161,7 +161,7 @@ class MapsOfScene {
     const MapError error = errorOf(found, reference_.truth);
     Record record = recordOf(quality, "ours");
     record.labels["quality"] = quality;
-    record.at = {{"particles", static_cast<double>(raytrace::photonsOf(quality))}};
+    record.at = {{"particles", static_cast<double>(raytrace::qualityOf(quality).photons)}};
     record.values = {{"seconds", Value::seconds(seconds)}};
     addErrors(record, error);
     addSize(record, opened_->maps);

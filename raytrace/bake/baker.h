@@ -25,13 +25,14 @@
 #include "raytrace/bake/kept.h"
 #include "raytrace/bake/open_area.h"
 #include "raytrace/bake/particles.h"
+#include "raytrace/bake/quality.h"
 #include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
 
 namespace saccade::raytrace {
 
 struct BakeOptions {
-  std::string quality = "medium";  ///< preview, medium or high
+  std::string quality = "medium";  ///< a name of quality.h
   std::uint64_t photons = 0;       ///< particles; 0 = as the quality says
   std::uint32_t seed = 1;
   std::size_t detailTexels = 0;             ///< most texels of blocks (core::MapDetail), a layer; 0: none
@@ -39,9 +40,6 @@ struct BakeOptions {
   const ImportedLight* imported = nullptr;  ///< replaces what is baked for some objects; null: none
   const KeptCharts* kept = nullptr;         ///< charts that keep the texels of an earlier bake; null: none
 };
-
-/// Particles that a quality stands for. Throws core::UsageError for an unknown name.
-std::uint64_t photonsOf(const std::string& quality);
 
 struct BakeProgress {
   double fraction = 0;  ///< of the time that the whole job takes, [0, 1]; never falls
@@ -81,7 +79,13 @@ class BakeJob {
                                 const BakeReport& report);
 
  private:
-  struct Pace;
+  /// How far a stage has come at the moment of a report.
+  struct Pace {
+    const BakeStage* stage = nullptr;  ///< null: the quick end
+    std::uint64_t done = 0;
+    double seconds = 0;
+    double finished = 0;  ///< share of the quick end
+  };
 
   void addOpenArea(int layer);
   void addParticles();
@@ -109,11 +113,11 @@ class BakeJob {
 
   const World& world_;
   BakeOptions options_;
+  const Quality& quality_;
   TexelMap texels_;
   int layers_;
   OpenArea open_;
   ParticleOptions tracing_;
-  int gatherRays_;  ///< 0: particles' indirect light is shown as it is
   ParticleState particles_;
   std::vector<std::vector<DirectEstimate>> direct_, gathered_;  ///< by layer
   TexelLight source_;                                           ///< what gather rays look up, once found

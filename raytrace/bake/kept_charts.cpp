@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "core/error.h"
 #include "raytrace/bake/baker.h"
 #include "raytrace/bake/change_bound.h"
+#include "raytrace/bake/quality.h"
 #include "raytrace/bake/texel_map.h"
 #include "raytrace/world.h"
 
@@ -62,13 +62,6 @@ std::vector<double> bounds(const ChangedScene& scene, const Hurry& hurry, double
 
 }  // namespace
 
-double errorTargetOf(const std::string& quality) {
-  if (quality == "high") return 0.02;
-  if (quality == "medium") return 0.05;
-  if (quality == "preview") return 0.1;
-  throw core::UsageError("unknown quality '" + quality + "': use preview, medium or high");
-}
-
 SceneChange findSceneChange(const ChangedScene& scene, const core::Plan& plan,
                             const core::IlluminationMaps& previous, int size,
                             const std::vector<char>& inPlace, double drift, int threads,
@@ -88,7 +81,7 @@ SceneChange findSceneChange(const ChangedScene& scene, const core::Plan& plan,
     ++kept;
   }
   const double mean = kept ? sum / static_cast<double>(kept) : 0;
-  const double allowed = std::max(0.0, 0.5 * errorTargetOf(previous.quality) - drift) * mean;
+  const double allowed = std::max(0.0, 0.5 * qualityOf(previous.quality).errorTarget - drift) * mean;
   const std::vector<double> bound = bounds(scene, {texels, plan, threads, stop}, allowed);
   SceneChange change;
   change.kept.previous = &previous;

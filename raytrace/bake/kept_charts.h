@@ -3,8 +3,8 @@
 // The light of each chart is bounded by how much it can have changed: by way of objects that moved, came,
 // went or changed their material, of the lights that stayed (change_bound.h); and by quick bakes of the
 // lights that changed, alone (change_scenes.h). A chart is kept where that, and what earlier changes left in
-// it, stays below half of the error target (half, since quick looks have errors too); the others are baked
-// again.
+// it, stays below half of the quality's error target (half, since quick looks have errors too); the others
+// are baked again.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,6 @@
 #include "raytrace/bake/kept.h"
 
 namespace saccade::raytrace {
-
-/// Root mean square error over mean irradiance that a quality stands for. Throws core::UsageError.
-double errorTargetOf(const std::string& quality);
 
 /// The scene that earlier maps were baked for.
 struct EarlierScene {

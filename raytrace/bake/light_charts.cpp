@@ -5,24 +5,12 @@
 
 #include "raytrace/bake/chart_layout.h"
 #include "raytrace/bake/light_variation.h"
+#include "raytrace/bake/quality.h"
 #include "raytrace/bake/texel_density.h"
 #include "raytrace/bake/texel_map.h"
 
 namespace saccade::raytrace {
 namespace {
-
-/// What a quality wants of its texels.
-struct Wish {
-  const char* quality;
-  double relativeError;
-  double texels;    ///< at most, the plan's cap apart: what the time of a bake goes by
-  double coarsest;  ///< of plan.coarsestTexel: indirect light wants this much everywhere
-  double detail;    ///< texels of blocks, at most
-};
-// Blocks are finer where light steps: the atlas itself need not be.
-constexpr Wish kWishes[] = {{"preview", 0.08, 1 << 18, 1, 0},
-                            {"medium", 0.08, 1 << 18, 0.5, 5 << 18},
-                            {"high", 0.02, 1 << 21, 0.25, 6 << 20}};
 
 constexpr double kTexelsPerChart = 64;
 constexpr int kProbeSize = 512;           // atlas side of the even charts in which light is measured
@@ -30,13 +18,6 @@ constexpr double kProbeFill = 0.8;        // of it
 constexpr double kProbeTexels = 1 << 20;  // the middle distance of a probe: texels of an atlas of so many
 constexpr int kSizeStep = 64;             // atlas sides are multiples of it
 constexpr double kMostFill = 0.95;        // a packing's at best
-
-const Wish& wishOf(const std::string& quality) {
-  for (const Wish& w : kWishes) {
-    if (quality == w.quality) return w;
-  }
-  throw core::UsageError("unknown quality '" + quality + "': use preview, medium or high");
-}
 
 /// Packs into the smallest atlas that holds it, not larger than `largest`; 0 when that does not.
 int packSmallest(ChartLayout& layout, const std::vector<double>& texelMetres, int largest) {
@@ -94,17 +75,18 @@ std::size_t detailTexelsOf(const std::string& quality, const core::Plan& plan, i
   constexpr double kAtlasTexel = 5.0 / 3;
   const double left = static_cast<double>(plan.lightmapSize) * plan.lightmapSize -
                       kAtlasTexel * atlasSize * static_cast<double>(atlasSize);
-  return static_cast<std::size_t>(std::clamp(left, 0.0, wishOf(quality).detail));
+  return static_cast<std::size_t>(std::clamp(left, 0.0, qualityOf(quality).detailTexels));
 }
 
 LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const LightChartOptions& options,
                          const core::Progress& progress) {
-  const Wish& wish = wishOf(options.quality);
+  const Quality& wish = qualityOf(options.quality);
   const int largest = plan.lightmapSize > 0 ? plan.lightmapSize : kProbeSize;
   const double mostOfPlan = kMostFill * largest * largest;
   const bool mayByVertex = options.vertexLight && plan.denseMeshes > 0;
   ChartLayout layout(scene, std::min(wish.texels, mostOfPlan),
-                     mayByVertex ? VertexLight::whereItPays : VertexLight::never, wish.texels + wish.detail);
+                     mayByVertex ? VertexLight::whereItPays : VertexLight::never,
+                     wish.texels + wish.detailTexels);
   // Many small charts are not to share one texel each.
   const double mostTexels =
       std::min(std::max(wish.texels, kTexelsPerChart * static_cast<double>(layout.chartCount())), mostOfPlan);
@@ -124,13 +106,13 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   const std::vector<LightVariation> variation =
       measureVariation(*out.world, texels, layout, probes, progress);
   DensityGoal goal;
-  goal.relativeError = wish.relativeError;
+  goal.relativeError = wish.texelError;
   goal.mostTexels = mostTexels;
   goal.coarsest = plan.coarsestTexel > 0 ? wish.coarsest * static_cast<double>(plan.coarsestTexel) : even;
   // What blocks can do the atlas need not: a single thin chart of fine texels would empty most of it.
   constexpr double kFinestBesideBlocks = 1.0 / 8;
   goal.finest = std::max(static_cast<double>(plan.finestTexel),
-                         wish.detail > 0 ? goal.coarsest * kFinestBesideBlocks : 0);
+                         wish.detailTexels > 0 ? goal.coarsest * kFinestBesideBlocks : 0);
   DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);
   out.relativeError = choice.relativeError;
   out.atlas.size = packWithin(layout, choice.texelMetres, largest);

@@ -11,7 +11,7 @@
 namespace saccade::raytrace {
 
 struct LightChartOptions {
-  std::string quality = "medium";  ///< preview, medium or high: see kWishes in light_charts.cpp
+  std::string quality = "medium";  ///< a name of quality.h
   std::uint32_t seed = 1;
   int threads = 0;          ///< 0 = inline; changes nothing of the result
   bool vertexLight = true;  ///< dense meshes may keep their light by vertex (ChartLayout)

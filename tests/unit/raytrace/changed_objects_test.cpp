@@ -169,7 +169,7 @@ TEST(ChangedObjects, BoxThatMovesInOneOfTwoClosedRoomsLeavesTheOthersTexels) {
   EXPECT_GE(kept, second) << "nothing reaches the second room";
   EXPECT_LT(kept, second + texelsIn(again, 0, 2)) << "the floor under the box is another";
   const core::IlluminationMaps whole = again.bake(nullptr);
-  EXPECT_LT(worstChart(again, whole), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(again, whole), qualityOf("medium").errorTarget);
 }
 
 TEST(ChangedObjects, FaintBoxInOneRoomChangesWhatIsNearItOnly) {
@@ -180,7 +180,7 @@ TEST(ChangedObjects, FaintBoxInOneRoomChangesWhatIsNearItOnly) {
   EXPECT_EQ(again.change.keptCharts, 12u) << "4 % of what the box reflects is less than half the target";
   EXPECT_GT(again.change.drift, 0);
   EXPECT_EQ(again.change.texelShare, 0);
-  EXPECT_LT(worstChart(again, again.bake(nullptr)), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(again, again.bake(nullptr)), qualityOf("medium").errorTarget);
 }
 
 TEST(ChangedObjects, BlackBoxThatTurnsWhiteBakesWhatItLights) {
@@ -189,7 +189,7 @@ TEST(ChangedObjects, BlackBoxThatTurnsWhiteBakesWhatItLights) {
   EXPECT_GE(again.change.keptCharts, 6u);
   EXPECT_LT(again.change.keptCharts, 12u) << "walls beside it get what it reflects";
   EXPECT_GE(keptTexels(again, earlier), texelsIn(again, 2.2f, 4.2f));
-  EXPECT_LT(worstChart(again, again.bake(nullptr)), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(again, again.bake(nullptr)), qualityOf("medium").errorTarget);
 }
 
 TEST(ChangedObjects, BoxThatComesAndGoesBringsBackTheFirstMapsWhereItsRoomIs) {
@@ -198,7 +198,7 @@ TEST(ChangedObjects, BoxThatComesAndGoesBringsBackTheFirstMapsWhereItsRoomIs) {
   EXPECT_EQ(with.names(without).front(), "object 20 (new)");
   EXPECT_EQ(with.change.charts, 24u);
   EXPECT_GE(keptTexels(with, without), texelsIn(with, 0, 2)) << "the first room is closed";
-  EXPECT_LT(worstChart(with, with.bake(nullptr)), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(with, with.bake(nullptr)), qualityOf("medium").errorTarget);
 
   Earlier then = without;
   then.scene = with.scene;
@@ -208,7 +208,7 @@ TEST(ChangedObjects, BoxThatComesAndGoesBringsBackTheFirstMapsWhereItsRoomIs) {
   EXPECT_EQ(gone.names(then).front(), "object 20 (gone)");
   EXPECT_EQ(gone.layout.size, with.layout.size);
   EXPECT_GE(keptTexels(gone, then), texelsIn(gone, 0, 2));
-  EXPECT_LT(worstChart(gone, gone.bake(nullptr)), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(gone, gone.bake(nullptr)), qualityOf("medium").errorTarget);
 }
 
 TEST(ChangedObjects, LampThatMovesCountsInItsOldPlaceAndItsNew) {
@@ -217,7 +217,7 @@ TEST(ChangedObjects, LampThatMovesCountsInItsOldPlaceAndItsNew) {
   EXPECT_EQ(again.names(earlier).front(), "object 6 (moved)");
   EXPECT_EQ(again.change.keptCharts, 6u) << "all that shows irradiance in the second room";
   EXPECT_EQ(keptTexels(again, earlier), texelsIn(again, 2.2f, 4.2f));
-  EXPECT_LT(worstChart(again, again.bake(nullptr)), errorTargetOf("medium"));
+  EXPECT_LT(worstChart(again, again.bake(nullptr)), qualityOf("medium").errorTarget);
 }
 
 TEST(ChangedObjects, SceneWithNothingLeftKeepsNoLayout) {

@@ -120,7 +120,7 @@ TEST(KeptCharts, ChangeInOneRoomLeavesTheOthersTexelsAndTheResultIsWithinTheTarg
   });
   EXPECT_EQ(kept, count - static_cast<int>(std::lround(change.texelShare * count)));
   EXPECT_GT(changed, 0.99 * change.texelShare * count);
-  EXPECT_LT(std::sqrt(squares / count) / (sum / count), errorTargetOf("medium"));
+  EXPECT_LT(std::sqrt(squares / count) / (sum / count), qualityOf("medium").errorTarget);
 }
 
 TEST(KeptCharts, EmissionThatChangesIsNamedByItsObject) {
