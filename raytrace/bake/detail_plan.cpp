@@ -214,31 +214,50 @@ class Prober {
   double limit_;
 };
 
+/// Times 2^-n, exactly.
+double halved(double value, int n) { return value * (1.0 / (1 << n)); }
+
 std::size_t texelsOf(int log2Columns, int log2Rows) {
   if (log2Columns == 0 && log2Rows == 0) return 0;
   return core::MapBlock{0, 0, log2Columns, log2Rows}.texels();
 }
 
 double missedBy(const EdgeProbe& p, int log2Columns, int log2Rows) {
-  return std::ldexp(double{p.stepU}, -log2Columns) + std::ldexp(double{p.stepV}, -log2Rows) +
-         (log2Columns == 0 ? p.besideU : 0) + (log2Rows == 0 ? p.besideV : 0);
+  return halved(p.stepU, log2Columns) + halved(p.stepV, log2Rows) + (log2Columns == 0 ? p.besideU : 0) +
+         (log2Rows == 0 ? p.besideV : 0);
 }
 
-/// The sides at which error and `price` times texels are least together (Lagrange).
-core::MapBlock cheapest(const EdgeProbe& p, double price, int most) {
-  core::MapBlock best;
-  double least = missedBy(p, 0, 0);
-  for (int columns = 0; columns <= most; ++columns) {
-    for (int rows = 0; rows <= most; ++rows) {
-      const double sum = missedBy(p, columns, rows) + price * static_cast<double>(texelsOf(columns, rows));
-      if (sum >= least) continue;
-      least = sum;
-      best.log2Columns = columns;
-      best.log2Rows = rows;
+/// What blocks of all sizes cost at one price of a texel.
+class PriceList {
+ public:
+  PriceList(double price, int most) : most_(most) {
+    for (int columns = 0; columns <= most; ++columns) {
+      for (int rows = 0; rows <= most; ++rows)
+        cost_[columns][rows] = price * static_cast<double>(texelsOf(columns, rows));
     }
   }
-  return best;
-}
+
+  /// The sides at which error and cost are least together (Lagrange).
+  core::MapBlock cheapest(const EdgeProbe& p) const {
+    core::MapBlock best;
+    double least = missedBy(p, 0, 0);
+    // Larger blocks cost more, whatever they save: most texels are done after a few sizes.
+    for (int columns = 0; columns <= most_ && (columns == 0 || cost_[columns][0] < least); ++columns) {
+      for (int rows = columns == 0 ? 1 : 0; rows <= most_ && cost_[columns][rows] < least; ++rows) {
+        const double sum = missedBy(p, columns, rows) + cost_[columns][rows];
+        if (sum >= least) continue;
+        least = sum;
+        best.log2Columns = columns;
+        best.log2Rows = rows;
+      }
+    }
+    return best;
+  }
+
+ private:
+  int most_;
+  std::array<std::array<double, kMostLog2 + 1>, kMostLog2 + 1> cost_{};
+};
 
 class Planner {
  public:
@@ -255,9 +274,9 @@ class Planner {
   std::vector<DetailTexel> choose() const {
     std::vector<DetailTexel> out;
     if (candidates_.empty() || !(mean_.irradiance > 0)) return out;
-    const double price = choosePrice();
+    const PriceList prices(choosePrice(), most_);
     for (const Candidate& c : candidates_) {
-      const core::MapBlock block = cheapest(c.probe, price, most_);
+      const core::MapBlock block = prices.cheapest(c.probe);
       if (texelsOf(block.log2Columns, block.log2Rows) > 0) out.push_back({c.texel, block});
     }
     return out;
@@ -296,8 +315,9 @@ class Planner {
   Outcome at(double price) const {
     Outcome out;
     double missed = 0;
+    const PriceList prices(price, most_);
     for (const Candidate& c : candidates_) {
-      const core::MapBlock block = cheapest(c.probe, price, most_);
+      const core::MapBlock block = prices.cheapest(c.probe);
       missed += missedBy(c.probe, block.log2Columns, block.log2Rows);
       out.texels += texelsOf(block.log2Columns, block.log2Rows);
     }
