@@ -135,10 +135,11 @@ class MapsOfScene {
     record.values["p99"] = Value::error(error.p99);
   }
 
+  /// Of all layers, blocks of finer texels included.
   static void addSize(Record& record, const core::IlluminationMaps& maps) {
-    const double texels = static_cast<double>(maps.width) * maps.height * maps.layers;
-    record.values["texels"] = Value::count(texels);
-    record.values["map_bytes"] = Value::bytes(texels * 3 * sizeof(std::uint16_t));
+    const std::size_t texels = (maps.texels.size() + maps.detail.texels.size()) / 3;
+    record.values["texels"] = Value::count(static_cast<double>(texels));
+    record.values["map_bytes"] = Value::bytes(static_cast<double>(maps.lightBytes()));
   }
 
   /// As `saccade bake` does it, a few times where that is quick.
