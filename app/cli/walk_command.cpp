@@ -15,6 +15,7 @@
 #include "app/session/camera_path.h"
 #include "app/session/frame_loop.h"
 #include "app/session/headless.h"
+#include "app/session/kept_cache.h"
 #include "app/viewer/viewer.h"
 #include "core/image_io.h"
 
@@ -61,6 +62,8 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
   FrameLoop loop(workspace, *gl.renderer,
                  {o.corrective, threads, o.run.seed, o.run.exposureEv, threads > 0 && !o.samples});
   if (recorder) loop.recordTo(*recorder);
+  std::optional<KeptCache> kept;
+  if (o.keepCache) kept.emplace(workspace, o.scene, o.corrective, o.run.seed).restore(loop);
   if (!o.framesFolder.empty()) std::filesystem::create_directories(o.framesFolder);
   ProgressBar bar("walking");
   for (int i = 0; i < frames && !stop.stop_requested(); ++i) {
@@ -74,6 +77,7 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
     loop.step(loop.frame().view.camera(), o.size, FrameBudget::untilConverged(), stop);
   }
   if (!o.output.empty()) writeLast(o, loop);
+  if (kept) kept->keep(loop);
   RunStats stats = loop.stats();
   stats.context = gl.context->name();
   stats.renderer = gl.context->renderer();
@@ -144,6 +148,8 @@ void addWalkCommand(CLI::App& program, Run& run) {
       ->option_text("FILE");
   command->add_option("-o,--output", o->output, "Write the last frame: .exr (linear) or .png");
   command->add_flag("--converge", o->converge, "After the walk, rest until every non-diffuse pixel is exact");
+  command->add_flag("--keep-cache", o->keepCache,
+                    "Keep the cached samples for the next visit of this scene, and begin with those of the last");
   command->add_option("--budget-ms", o->budgetMs, "Milliseconds a frame, instead of --fps")
       ->check(CLI::PositiveNumber);
   command->add_option("--samples", o->samples,

@@ -31,6 +31,7 @@ struct WalkOptions {
   std::string record;
   std::string output;
   bool converge = false;
+  bool keepCache = false;
   std::optional<double> budgetMs;
   std::optional<std::uint64_t> samples;
   std::string uiScreenshot;

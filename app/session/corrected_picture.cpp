@@ -1,5 +1,7 @@
 #include "app/session/corrected_picture.h"
 
+#include <utility>
+
 #include "core/composite.h"
 
 namespace saccade::app {
@@ -19,21 +21,57 @@ bool CorrectedPicture::shows(const core::Camera& camera, ImageSize size) const {
 
 void CorrectedPicture::begin(const core::Camera& camera, ImageSize size) {
   const core::View view(camera, size.width, size.height, scene_.bounds);
-  {
-    const StageTimer timer(stats_, "age");
-    stats_.samplesDropped += cache_.age(view, {settings_.nMin, settings_.delta, settings_.maxAge}).deleted;
+  const bool resumed = drawResumed(view);
+  if (!resumed) {
+    age(view);
+    draw(view);
   }
-  {
-    const StageTimer timer(stats_, "draw");
-    frame_ = renderer_.render(view, cache_.cameraAge(), settings_.nMin);
-  }
+  warp();
+  toTrace_ = frame_;
+  if (resumed) showExact();
+}
+
+void CorrectedPicture::age(const core::View& view) {
+  const StageTimer timer(stats_, "age");
+  stats_.samplesDropped += cache_.age(view, {settings_.nMin, settings_.delta, settings_.maxAge}).deleted;
+}
+
+void CorrectedPicture::draw(const core::View& view) {
+  const StageTimer timer(stats_, "draw");
+  frame_ = renderer_.render(view, cache_.cameraAge(), settings_.nMin);
+}
+
+void CorrectedPicture::warp() {
   const StageTimer timer(stats_, "warp");
   layer_.beginFrame(frame_);
-  if (settings_.reuse) {
-    const render::SampleCache::WarpResult warped = cache_.warp(*frame_, layer_);
-    stats_.samplesReused += warped.splatted;
-    stats_.samplesDropped += warped.dropped;
-  }
+  if (!settings_.reuse) return;
+  const render::SampleCache::WarpResult warped = cache_.warp(*frame_, layer_);
+  stats_.samplesReused += warped.splatted;
+  stats_.samplesDropped += warped.dropped;
+}
+
+/// After resume(): draws the frame without aging. False where it is not the one that the visit ended with.
+bool CorrectedPicture::drawResumed(const core::View& view) {
+  const std::optional<VisitEnd> end = std::exchange(resumed_, std::nullopt);
+  if (!end || !settings_.reuse || end->aging != agingHash(settings_) ||
+      !end->samePicture({view.camera(), {view.width(), view.height()}}))
+    return false;
+  draw(view);
+  return maskHash(*frame_) == end->mask;
+}
+
+/// Shows the cache's samples of this very frame, which are exact.
+void CorrectedPicture::showExact() {
+  cache_.forEach([this](const core::Sample& sample, std::uint64_t age) {
+    if (age == frame_->epoch) layer_.splat(sample);
+  });
+  stats_.samplesResumed = layer_.exactCount();
+  toTrace_ = maskedFrame(*frame_, [this](int x, int y) { return !layer_.isExact(x, y); });
+}
+
+VisitEnd CorrectedPicture::visitEnd() const {
+  const core::View& view = frame_->view;
+  return {view.camera(), {view.width(), view.height()}, agingHash(settings_), maskHash(*frame_)};
 }
 
 void CorrectedPicture::take(const core::SampleBatch& batch) {

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "app/cli/options.h"
 #include "app/session/stats.h"
+#include "app/session/visit_end.h"
 #include "core/corrective/messages.h"
 #include "core/image.h"
 #include "core/scene/scene.h"
@@ -45,6 +47,13 @@ class CorrectedPicture {
   bool shows(const core::Camera& camera, ImageSize size) const;
   /// The next camera is a new one although it may be the same.
   void invalidate() { frame_ = nullptr; }
+  /// Before the first begin, with cache() filled by an earlier visit: where that begin's frame turns out to be
+  /// the very one that the visit ended with, its samples are exact and the picture goes on from there. Any other
+  /// frame takes them for what they are, samples of an older camera.
+  void resume(const VisitEnd& end) { resumed_ = end; }
+  /// Of the frame there is.
+  VisitEnd visitEnd() const;
+
   /// Steps 2 to 5, for a new camera: aging, base layer, read-back, warp.
   void begin(const core::Camera& camera, ImageSize size);
   /// Splats what was traced for this frame, and caches it. Samples for an older frame are never exact; they
@@ -55,6 +64,8 @@ class CorrectedPicture {
   void composite();
 
   const core::FramePtr& frame() const { return frame_; }         ///< null before the first begin
+  /// The frame as begin() left it, with only those pixels on its mask that were not exact then.
+  const core::FramePtr& toTrace() const { return toTrace_; }
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite
   /// The same for another thread: the next composite goes into another image.
   std::shared_ptr<const core::ImageRgba8> shareDisplay();
@@ -65,13 +76,20 @@ class CorrectedPicture {
   const render::SampleCache& cache() const { return cache_; }
 
  private:
+  void age(const core::View& view);
+  void draw(const core::View& view);
+  bool drawResumed(const core::View& view);
+  void warp();
+  void showExact();
+
   const core::Scene& scene_;
   render::BaseRenderer& renderer_;
   PictureSettings settings_;
   RunStats& stats_;
   render::CorrectionLayer layer_;
   render::SampleCache cache_;
-  core::FramePtr frame_;
+  core::FramePtr frame_, toTrace_;
+  std::optional<VisitEnd> resumed_;
   std::shared_ptr<core::ImageRgba8> display_;
   bool displayIsShared_ = false;  ///< another thread may be reading display_
 };

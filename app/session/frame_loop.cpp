@@ -72,7 +72,7 @@ void FrameLoop::beginFrame(const core::Camera& camera, ImageSize size) {
   dropPending();
   picture_.begin(camera, size);
   if (!options_.asynchronousAnalysis) analyseNow();
-  regions_.beginFrame(picture_.frame());
+  regions_.beginFrame(picture_.toTrace());
 }
 
 void FrameLoop::analyseNow() {
@@ -84,6 +84,7 @@ void FrameLoop::analyseNow() {
 void FrameLoop::correct(Clock::time_point start, const FrameBudget& budget, const std::stop_token& stop) {
   using Kind = FrameBudget::Kind;
   if (budget.kind == Kind::samples) return correctSamples(budget.samples, stop);
+  takePending();
   if (options_.threads == 0) return correctInline(budget, stop);
   if (budget.kind == Kind::converge) return correctAll(stop);
   const auto time = std::chrono::duration<double>(std::max(0.0, budget.time.count() - tailSeconds_));
@@ -136,11 +137,11 @@ void FrameLoop::correctSamples(std::uint64_t count, const std::stop_token& stop)
 }
 
 /// Takes what stands at the head of the order; the rest of a cut batch waits for the next frame of this
-/// camera.
+/// camera. Batches of before nextSequence_ are stragglers of a frame that took them as they came.
 std::uint64_t FrameLoop::takeInOrder(std::uint64_t atMost) {
   std::uint64_t taken = 0;
-  for (auto it = pending_.find(nextSequence_); it != pending_.end() && taken < atMost;
-       it = pending_.find(nextSequence_)) {
+  for (auto it = pending_.begin(); it != pending_.end() && it->first <= nextSequence_ && taken < atMost;
+       it = pending_.begin()) {
     std::vector<core::Sample>& samples = it->second.samples;
     const auto cut = static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(atMost - taken, samples.size()));
     core::SampleBatch head{it->second.epoch, it->second.sequence, {samples.begin(), samples.begin() + cut}};
@@ -149,9 +150,14 @@ std::uint64_t FrameLoop::takeInOrder(std::uint64_t atMost) {
     samples.erase(samples.begin(), samples.begin() + cut);
     if (!samples.empty()) break;
     pending_.erase(it);
-    ++nextSequence_;
   }
   return taken;
+}
+
+/// A frame without a sample budget follows one with it.
+void FrameLoop::takePending() {
+  for (auto& [sequence, batch] : pending_) take(std::move(batch));
+  pending_.clear();
 }
 
 void FrameLoop::dropPending() {
@@ -161,6 +167,7 @@ void FrameLoop::dropPending() {
 }
 
 void FrameLoop::take(core::SampleBatch&& batch) {
+  if (batch.epoch == frame().epoch) nextSequence_ = std::max(nextSequence_, batch.sequence + 1);
   if (onBatch) onBatch(batch);
   picture_.take(batch);
   if (!sink_) return;

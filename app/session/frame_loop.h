@@ -70,6 +70,13 @@ class FrameLoop {
   void step(const core::Camera& camera, ImageSize size, const FrameBudget& budget,
             const std::stop_token& stop = {});
 
+  /// Before the first step: see CorrectedPicture::resume.
+  void resume(const VisitEnd& end) { picture_.resume(end); }
+  /// Of the last step; nothing before the first.
+  std::optional<VisitEnd> visitEnd() const {
+    return picture_.frame() ? std::optional(picture_.visitEnd()) : std::nullopt;
+  }
+
   const core::ImageRgba8& display() const { return picture_.display(); }  ///< of the last step
   core::ImageRgb linear() { return picture_.linear(); }  ///< base + correction of the last step
   const core::FrameSnapshot& frame() const { return *picture_.frame(); }
@@ -80,6 +87,7 @@ class FrameLoop {
   const raytrace::CorrectiveTracer& tracer() const { return tracer_; }
   const render::CorrectionLayer& layer() const { return picture_.layer(); }
   const render::SampleCache& cache() const { return picture_.cache(); }
+  render::SampleCache& cache() { return picture_.cache(); }  ///< to be filled before the first step
   const attention::Analyzer& analyzer() const { return analyzer_; }
   const RunStats& stats() const { return stats_; }
   bool converged() const { return layer().converged(); }
@@ -115,6 +123,7 @@ class FrameLoop {
   void correctSamples(std::uint64_t count, const std::stop_token& stop);
   void correctAll(const std::stop_token& stop);
   std::uint64_t takeInOrder(std::uint64_t atMost);
+  void takePending();
   void dropPending();
   void take(core::SampleBatch&& batch);
   void feedAnalyzer();
@@ -133,7 +142,7 @@ class FrameLoop {
   double tailSeconds_ = 0;  ///< running mean of steps 7 and 8, kept free of the deadline
   std::map<std::uint64_t, core::SampleBatch>
       pending_;                     ///< sample budget: batches of this frame not yet taken
-  std::uint64_t nextSequence_ = 0;  ///< sample budget: the batch to take next
+  std::uint64_t nextSequence_ = 0;  ///< sample budget: after what was taken of this frame
   // Declared last: their threads use the channels above and must end first.
   attention::Analyzer analyzer_;
   raytrace::TracerPool pool_;

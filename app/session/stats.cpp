@@ -39,7 +39,10 @@ void writeStats(const std::filesystem::path& file, const RunStats& s) {
                       {"p99", s.framePercentileMs(0.99)}};
   json["missed_deadlines"] = s.missedDeadlines;
   json["frames"] = s.frameMs.size();
-  json["samples"] = {{"traced", s.samplesTraced}, {"reused", s.samplesReused}, {"dropped", s.samplesDropped}};
+  json["samples"] = {{"traced", s.samplesTraced},
+                     {"reused", s.samplesReused},
+                     {"resumed", s.samplesResumed},
+                     {"dropped", s.samplesDropped}};
   json["samples_per_frame"] = s.samplesPerFrame;
   for (int level = 1; level <= core::Lattice::kMaxLevel; ++level) {
     json["levels"][std::to_string(level)] = s.levels[static_cast<std::size_t>(level)];

@@ -14,6 +14,7 @@
 #include "app/recording/session_recorder.h"
 #include "app/session/camera_path.h"
 #include "app/session/headless.h"
+#include "app/session/kept_cache.h"
 #include "app/session/live_error.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/walker.h"
@@ -55,6 +56,8 @@ class Viewer {
     renderer_.setMaps(&workspace.maps);
     if (!options.path.empty()) path_ = CameraPath::read(options.path);
     if (options.orbit) path_ = CameraPath::orbit(home_, kOrbitPeriodSeconds);
+    if (options.keepCache)
+      kept_.emplace(workspace, options.scene, options.corrective, options.run.seed).restore(loop_);
     panel_.attention = static_cast<float>(options.corrective.attention.attention);
     panel_.fps = static_cast<float>(options.fps);
     panel_.exposureEv = options.run.exposureEv;
@@ -69,6 +72,7 @@ class Viewer {
       closing_ = !open_ || timeUp || stop.stop_requested();  // one more frame then, for the screenshot
       frame();
     }
+    if (kept_) kept_->keep(loop_);
     RunStats stats = loop_.stats();
     stats.context = window_.context().name();
     stats.renderer = window_.context().renderer();
@@ -231,6 +235,7 @@ class Viewer {
   std::optional<LiveError> liveError_;         ///< above the loop: its idle thread ends once the tracers have
   std::unique_ptr<SessionRecorder> recorder_;  ///< null without --record
   FrameLoop loop_;
+  std::optional<KeptCache> kept_;
   core::Camera home_;
   Walker walker_;
   std::optional<CameraPath> path_;

@@ -137,6 +137,14 @@ std::size_t SampleCache::add(const core::SampleBatch& batch, std::uint64_t camer
   return stored;
 }
 
+std::size_t SampleCache::restore(const core::SampleBatch& batch, std::uint64_t cameraAge,
+                                 float pixelsPerRadian) {
+  assert(cameraAge > cameraAge_);
+  cameraAge_ = cameraAge;
+  pixelsPerRadian_ = pixelsPerRadian;
+  return add(batch, cameraAge);
+}
+
 /// The generation of an age, made where there is none.
 SampleCache::Generation& SampleCache::generation(std::uint64_t age) {
   auto it = generations_.end();
@@ -276,7 +284,9 @@ SampleCache::WarpResult SampleCache::warp(const core::FrameSnapshot& frame, Corr
   WarpResult result;
   claimed_.assign(frame.depth.size(), 0);
   for (auto& list : visible_) list.clear();
-  for (std::size_t i = generations_.size(); i-- > 0;) findVisible(generations_[i], frame, result);
+  for (std::size_t i = generations_.size(); i-- > 0;) {
+    if (generations_[i].age != frame.epoch) findVisible(generations_[i], frame, result);
+  }
   // The picture does not depend on the order. Fine before coarse and young before old lets the layer pass
   // over whole tiles of the large splats.
   for (int level = kMaxLevel; level >= 1; --level) {

@@ -56,12 +56,17 @@ class SampleCache {
   /// stored.
   std::size_t add(const core::SampleBatch& batch, std::uint64_t cameraAge);
 
+  /// Takes over samples of an earlier run: before the first age(), age by age, oldest first, with what
+  /// forEachAge and forEach gave. The camera is of the last age given from then on. As add() otherwise.
+  std::size_t restore(const core::SampleBatch& batch, std::uint64_t cameraAge, float pixelsPerRadian);
+
   /// Step 2 of the loop: to be called once for every new camera, the first included. Raises the camera age,
   /// then the paper's pseudo code. Two additions where the paper says nothing: v is normalised (fact 15), and
   /// all samples of an object none of whose levels has N_min of them are tested together.
   AgingResult age(const core::View& view, const AgingOptions& options);
 
-  /// Step 5: projects all samples into the frame and splats the visible ones as placeholders. A sample is
+  /// Step 5: projects all samples into the frame and splats the visible ones as placeholders; those traced for
+  /// this very frame (its epoch is their camera's age) are exact and none of its business. A sample is
   /// visible if its object has the pixel it falls on and its view depth agrees with the depth buffer there:
   /// the difference is at most one pixel's footprint at that depth plus the change of depth of the buffer
   /// across the pixel in x and in y (fact 12). Footprints grow and shrink with the magnification, so that an
@@ -74,6 +79,20 @@ class SampleCache {
   /// Samples of an object's level.
   std::uint32_t count(std::uint32_t id, int level) const;
   void clear();
+
+  /// Calls visit(std::uint64_t cameraAge, float pixelsPerRadian, std::size_t samples) for every age of which
+  /// there are samples and for the camera's, oldest first. The second is the view's, at the image's centre.
+  template <class Visit>
+  void forEachAge(Visit&& visit) const {
+    bool present = false;
+    for (const Generation& g : generations_) {
+      std::size_t samples = 0;
+      for (const auto& page : g.pages) samples += static_cast<std::size_t>(page->count);
+      present = g.age == cameraAge_;
+      if (samples > 0 || present) visit(g.age, g.pixelsPerRadian, samples);
+    }
+    if (!present) visit(cameraAge_, pixelsPerRadian_, std::size_t{0});
+  }
 
   /// Calls visit(const core::Sample&, std::uint64_t cameraAge) for every sample, oldest age first.
   template <class Visit>
