@@ -148,8 +148,9 @@ void addWalkCommand(CLI::App& program, Run& run) {
       ->option_text("FILE");
   command->add_option("-o,--output", o->output, "Write the last frame: .exr (linear) or .png");
   command->add_flag("--converge", o->converge, "After the walk, rest until every non-diffuse pixel is exact");
-  command->add_flag("--keep-cache", o->keepCache,
-                    "Keep the cached samples for the next visit of this scene, and begin with those of the last");
+  command->add_flag(
+      "--keep-cache", o->keepCache,
+      "Keep the cached samples for the next visit of this scene, and begin with those of the last");
   command->add_option("--budget-ms", o->budgetMs, "Milliseconds a frame, instead of --fps")
       ->check(CLI::PositiveNumber);
   command->add_option("--samples", o->samples,

@@ -47,9 +47,9 @@ class CorrectedPicture {
   bool shows(const core::Camera& camera, ImageSize size) const;
   /// The next camera is a new one although it may be the same.
   void invalidate() { frame_ = nullptr; }
-  /// Before the first begin, with cache() filled by an earlier visit: where that begin's frame turns out to be
-  /// the very one that the visit ended with, its samples are exact and the picture goes on from there. Any other
-  /// frame takes them for what they are, samples of an older camera.
+  /// Before the first begin, with cache() filled by an earlier visit: where that begin's frame turns out to
+  /// be the very one that the visit ended with, its samples are exact and the picture goes on from there. Any
+  /// other frame takes them for what they are, samples of an older camera.
   void resume(const VisitEnd& end) { resumed_ = end; }
   /// Of the frame there is.
   VisitEnd visitEnd() const;
@@ -63,7 +63,7 @@ class CorrectedPicture {
   /// Step 7.
   void composite();
 
-  const core::FramePtr& frame() const { return frame_; }         ///< null before the first begin
+  const core::FramePtr& frame() const { return frame_; }  ///< null before the first begin
   /// The frame as begin() left it, with only those pixels on its mask that were not exact then.
   const core::FramePtr& toTrace() const { return toTrace_; }
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite

@@ -1,6 +1,7 @@
 // `walk --keep-cache`: the samples of one visit are where the next one of the same scene begins.
 //
-// One file a scene file in the cache folder. Samples of another state of the scene, other maps, other --spp or
+// One file a scene file in the cache folder. Samples of another state of the scene, other maps, other --spp
+// or
 // --seed, or another build of the program are not used: each of these changes corrections. --delta, --nmin,
 // --max-age, --cache-mb, --order and the image's size do not: they decide which samples are shown, kept or
 // traced first, and the first frame decides anew.
@@ -23,7 +24,8 @@ class KeptCache {
   KeptCache(const Workspace& workspace, const SceneOptions& scene, const CorrectiveOptions& corrective,
             std::uint32_t seed);
 
-  /// Before the loop's first step. Where nothing can be taken over, one line says why (none on a first visit).
+  /// Before the loop's first step. Where nothing can be taken over, one line says why (none on a first
+  /// visit).
   void restore(FrameLoop& loop) const;
   /// After the loop's last step. What cannot be written is a warning. `maxBytes`: of the file.
   void keep(const FrameLoop& loop) const;

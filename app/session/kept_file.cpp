@@ -163,7 +163,8 @@ core::ByteReader readerOf(Bytes bytes, const std::filesystem::path& file) {
 KeptVisit readHead(core::ByteReader& in) {
   const auto version = in.number<std::uint32_t>();
   const auto size = in.number<std::uint32_t>();
-  if (version != kKeptVersion || size != sampleBytes()) in.refuse("was written by another version of saccade");
+  if (version != kKeptVersion || size != sampleBytes())
+    in.refuse("was written by another version of saccade");
   KeptVisit visit;
   headFields(Reader{in}, visit);
   const ImageSize& image = visit.end.size;

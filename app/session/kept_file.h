@@ -3,9 +3,9 @@
 // Little-endian, nothing between the fields. All integers are unsigned unless a line says otherwise.
 //   magic "SACSAMPL", version u32, bytes of a sample u32
 //   origin: scene u64, maps u64, settings u64, program u64, machine u64 (SampleOrigin)
-//   end: eye 3 f32, at 3 f32, up 3 f32, field of view f32 (degrees), width i32, height i32, aging u64, mask u64
-//   number of ages u64
-//   per age, oldest first, the camera's own last: age u64, pixels a radian f32, samples u64, and each of them:
+//   end: eye 3 f32, at 3 f32, up 3 f32, field of view f32 (degrees), width i32, height i32, aging u64, mask
+//   u64 number of ages u64 per age, oldest first, the camera's own last: age u64, pixels a radian f32,
+//   samples u64, and each of them:
 //     x u16, y u16, id u32, level u8, thread u8, from depth u8 (0 or 1), 0 u8,
 //     correction 3 f32, position 3 f32, normal 3 f32, <n, v> f32, view depth f32
 //   hash u64 of all before it (core::ContentHash, in pieces of 1 MiB)
@@ -45,8 +45,8 @@ class KeptFile {
   KeptFile(const std::filesystem::path& file, const core::LoadLimits& limits);
 
   const KeptVisit& visit() const { return visit_; }
-  /// Fills an empty cache that was never aged, up to its bound. Throws core::Error, with the cache empty, where
-  /// the file holds samples that no walk makes; ids must be at most `idCount`.
+  /// Fills an empty cache that was never aged, up to its bound. Throws core::Error, with the cache empty,
+  /// where the file holds samples that no walk makes; ids must be at most `idCount`.
   void samples(std::uint32_t idCount, render::SampleCache& cache) const;
 
  private:

@@ -16,8 +16,8 @@ namespace saccade::app {
 struct RunStats {
   std::vector<double> frameMs;
   std::uint64_t missedDeadlines = 0;
-  std::uint64_t samplesTraced = 0;  ///< corrective samples that reached a frame as exact ones
-  std::uint64_t samplesReused = 0;  ///< cached samples warped into frames, summed over frames
+  std::uint64_t samplesTraced = 0;   ///< corrective samples that reached a frame as exact ones
+  std::uint64_t samplesReused = 0;   ///< cached samples warped into frames, summed over frames
   std::uint64_t samplesResumed = 0;  ///< pixels exact from the start by an earlier visit's samples
   std::uint64_t samplesDropped =
       0;  ///< removed by aging or the cache's bound, or traced beyond a sample budget

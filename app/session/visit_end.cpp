@@ -19,7 +19,8 @@ std::uint64_t agingHash(const PictureSettings& o) {
 std::uint64_t maskHash(const core::FrameSnapshot& frame) {
   core::ContentHash hash;
   for (const std::vector<float>* values : {&frame.ids, &frame.depth}) {
-    hash.add(std::span(reinterpret_cast<const std::uint8_t*>(values->data()), values->size() * sizeof(float)));
+    hash.add(
+        std::span(reinterpret_cast<const std::uint8_t*>(values->data()), values->size() * sizeof(float)));
   }
   return hash.value();
 }

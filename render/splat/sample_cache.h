@@ -65,8 +65,8 @@ class SampleCache {
   /// all samples of an object none of whose levels has N_min of them are tested together.
   AgingResult age(const core::View& view, const AgingOptions& options);
 
-  /// Step 5: projects all samples into the frame and splats the visible ones as placeholders; those traced for
-  /// this very frame (its epoch is their camera's age) are exact and none of its business. A sample is
+  /// Step 5: projects all samples into the frame and splats the visible ones as placeholders; those traced
+  /// for this very frame (its epoch is their camera's age) are exact and none of its business. A sample is
   /// visible if its object has the pixel it falls on and its view depth agrees with the depth buffer there:
   /// the difference is at most one pixel's footprint at that depth plus the change of depth of the buffer
   /// across the pixel in x and in y (fact 12). Footprints grow and shrink with the magnification, so that an

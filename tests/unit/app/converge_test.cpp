@@ -161,6 +161,19 @@ TEST_P(Walk, OfSixtyFramesThenRestEqualsRayTraced) {
 }
 INSTANTIATE_TEST_SUITE_P(Threads, Walk, testing::Values(0, 1, 2, 8));
 
+TEST_P(Walk, BudgetsOfAllKindsMayFollowEachOther) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = GetParam()});
+  loop.step(camera_, size_, FrameBudget::firstSamples(333));
+  loop.step(camera_, size_, FrameBudget::untilDeadline(std::chrono::milliseconds(2)));
+  const std::uint64_t traced = loop.stats().samplesTraced;
+  loop.step(camera_, size_, FrameBudget::firstSamples(111));
+  EXPECT_EQ(loop.stats().samplesTraced, std::min<std::uint64_t>(traced + 111, loop.frame().nonDiffusePixels));
+  loop.step(camera_, size_, FrameBudget::untilConverged());
+  ASSERT_TRUE(loop.converged());
+  EXPECT_EQ(loop.stats().samplesTraced, loop.frame().nonDiffusePixels);
+  EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
+}
+
 TEST_F(LoopTest, AnInlineWalkRepeatsExactly) {
   const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
   std::vector<core::ImageRgba8> first;
