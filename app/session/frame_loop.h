@@ -108,6 +108,7 @@ class FrameLoop {
 
   /// From the first step on, `sink` hears of everything that pictures depend on; it must outlive the loop.
   void recordTo(SessionSink& sink) { sink_ = &sink; }
+  bool recording() const { return sink_ != nullptr; }
 
   /// Called for each batch as it arrives, before it is splatted: tests perturb, shuffle and count through it.
   std::function<void(core::SampleBatch&)> onBatch;

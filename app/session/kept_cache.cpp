@@ -97,6 +97,11 @@ KeptCache::KeptCache(const Workspace& workspace, const SceneOptions& scene,
 
 void KeptCache::restore(FrameLoop& loop) const {
   if (!std::filesystem::exists(file_)) return;
+  if (loop.recording()) {
+    spdlog::info(
+        "a recording holds all that its pictures are made of: the samples of the last visit are not used");
+    return;
+  }
   try {
     const KeptFile kept(file_, limits_);
     const std::string changed = difference(kept.visit().origin, origin_);

@@ -24,8 +24,8 @@ class KeptCache {
   KeptCache(const Workspace& workspace, const SceneOptions& scene, const CorrectiveOptions& corrective,
             std::uint32_t seed);
 
-  /// Before the loop's first step. Where nothing can be taken over, one line says why (none on a first
-  /// visit).
+  /// Before the loop's first step, and after FrameLoop::recordTo: a recorded walk begins without. Where
+  /// nothing can be taken over, one line says why (none on a first visit).
   void restore(FrameLoop& loop) const;
   /// After the loop's last step. What cannot be written is a warning. `maxBytes`: of the file.
   void keep(const FrameLoop& loop) const;

@@ -209,6 +209,8 @@ TEST(KeepCacheOption, SaysInOneLineWhatItDid) {
   said(kWalk, "samples of the last visit");
   said(kWalk + "--spp 2", "not used: --spp or --seed has changed");
   said(kWalk + "--spp 2 --delta 0.2 --camera 0", "beginning with");
+  said(kWalk + "--spp 2 --record '" + (tests::temporaryFolder() / "kept.session").string() + "'",
+       "the samples of the last visit are not used");
   said(walkWith("seed2.maps", "--seed 2"), "not used: the illumination maps have changed");
   said(walkWith("diffuse.maps", "--nondiffuse 0.9"), "not used: the scene has changed");
 }
