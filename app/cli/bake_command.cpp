@@ -27,6 +27,11 @@ struct BakeOptions {
   bool mustBake() const { return exportFile.empty() || !output.empty() || !importFolder.empty(); }
 };
 
+const char* noteOn(const Workspace& w) {
+  if (w.mapsWereThere) return " (already there, not baked again)";
+  return w.mapsAreKept ? "" : " (not kept)";
+}
+
 int bake(const BakeOptions& o) {
   const auto start = std::chrono::steady_clock::now();
   if (!o.exportFile.empty()) checkExport(o.exportFile, o.scene.path);
@@ -44,11 +49,10 @@ int bake(const BakeOptions& o) {
   if (!o.exportFile.empty()) exportLit(*workspace, o.exportFile, tracerThreads(o.run), interruptToken());
   const core::IlluminationMaps& maps = workspace->maps;
   std::printf("%s%s: %dx%d texels, %d layer%s, %.1f MiB%s, %llu particles, quality %s, %.1f s\n",
-              file.c_str(), workspace->mapsWereThere ? " (already there, not baked again)" : "", maps.width,
-              maps.height, maps.layers, maps.layers == 1 ? "" : "s",
-              static_cast<double>(maps.lightBytes()) / (1 << 20), maps.detail.empty() ? "" : " with detail",
-              static_cast<unsigned long long>(maps.photons), maps.quality.c_str(),
-              millisecondsSince(start) / 1000);
+              file.c_str(), noteOn(*workspace), maps.width, maps.height, maps.layers,
+              maps.layers == 1 ? "" : "s", static_cast<double>(maps.lightBytes()) / (1 << 20),
+              maps.detail.empty() ? "" : " with detail", static_cast<unsigned long long>(maps.photons),
+              maps.quality.c_str(), millisecondsSince(start) / 1000);
   return 0;
 }
 

@@ -75,6 +75,7 @@ std::stop_token interruptToken() {
         if (interrupted.exchange(true)) std::_Exit(130);  // a second signal ends at once
       });
     }
+    std::signal(SIGXFSZ, SIG_IGN);  // a quota that is used up is an error of the write
     return true;
   }();
   static_cast<void>(installed);

@@ -2,6 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <span>
+#include <vector>
+
 #include "app/session/maps_note.h"
 #include "core/cache_folder.h"
 #include "core/content_hash.h"
@@ -14,6 +17,17 @@ std::filesystem::path noteFile(const core::Scene& scene, const std::string& sett
   hash.add(std::filesystem::absolute(scene.path).lexically_normal().string());
   hash.add(settings);
   return core::cacheFolder() / (core::cacheName(hash.value()) + ".newest");
+}
+
+std::uint64_t lightOf(const core::IlluminationMaps& maps) {
+  core::ContentHash hash;
+  const auto add = [&](const std::vector<std::uint16_t>& texels) {
+    hash.add(
+        std::span(reinterpret_cast<const std::uint8_t*>(texels.data()), texels.size() * sizeof texels[0]));
+  };
+  add(maps.texels);
+  add(maps.detail.texels);
+  return hash.value();
 }
 
 }  // namespace
@@ -30,6 +44,10 @@ std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::Sce
       return std::nullopt;
     }
     EarlierMaps earlier{core::readMaps(note.maps, note.key), std::move(note.scene)};
+    if (lightOf(earlier.maps) != note.light) {
+      spdlog::info("{} was written anew since its scene was noted: baking everything", note.maps);
+      return std::nullopt;
+    }
     const core::Scene& plain = earlier.scene.state.plain;
     const bool fits = earlier.maps.charts.meshes.size() == plain.meshes.size() &&
                       earlier.maps.charts.places.size() == plain.objects.size();
@@ -39,13 +57,15 @@ std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::Sce
   }
 }
 
-void rememberMaps(const core::Scene& scene, const core::SceneState& state, const std::string& settings,
+void rememberMaps(const Workspace& opened, const core::SceneState& state, const std::string& settings,
                   const std::filesystem::path& file, double drift) {
   try {
-    const std::filesystem::path note = noteFile(scene, settings);
+    const std::filesystem::path note = noteFile(opened.scene, settings);
     std::error_code ignored;  // writing says what is wrong
     std::filesystem::create_directories(note.parent_path(), ignored);
-    writeNote(note, {std::filesystem::absolute(file).string(), core::sceneKey(scene), {state, drift}});
+    writeNote(
+        note,
+        {std::filesystem::absolute(file).string(), opened.maps.key, lightOf(opened.maps), {state, drift}});
   } catch (const core::Error& e) {
     spdlog::debug("{}", e.what());
   }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "app/session/workspace.h"
 #include "core/maps.h"
 #include "core/scene/scene.h"
 #include "raytrace/bake/kept_charts.h"
@@ -20,14 +21,15 @@ struct EarlierMaps {
 };
 
 /// The newest maps that were baked from this scene file with these settings (which tell maps of one scene
-/// apart), when it has changed since. None where the change is of a kind of which nothing can stay: that of
-/// the environment, which is said. `state` is the scene's.
+/// apart), when it has changed since. None where the file was written anew since (with lightmaps of another
+/// program, say) or the change is of a kind of which nothing can stay, that of the environment; both are
+/// said. `state` is the scene's.
 std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::SceneState& state,
                                        const std::string& settings);
 
-/// Notes that `file` holds this scene's newest maps. `drift`: raytrace::EarlierScene. Failures only make a
-/// later bake longer.
-void rememberMaps(const core::Scene& scene, const core::SceneState& state, const std::string& settings,
+/// Notes that `file` holds the newest maps of the opened scene. `drift`: raytrace::EarlierScene. Failures
+/// only make a later bake longer.
+void rememberMaps(const Workspace& opened, const core::SceneState& state, const std::string& settings,
                   const std::filesystem::path& file, double drift);
 
 }  // namespace saccade::app

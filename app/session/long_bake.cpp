@@ -58,11 +58,13 @@ class Keeper {
 
   /// Keeps what is there and throws how to go on.
   [[noreturn]] void stopped() {
-    const std::string file = checkpointPath(bake_.maps).string();
-    if (!keep())
-      throw core::Error("stopped on request; no checkpoint could be written, a new bake starts anew");
-    throw core::Error("stopped on request, " + percent(job_) + " done; the same command" +
-                      (bake_.explicitly ? " with --resume" : "") + " goes on from " + file);
+    if (!keep()) {
+      const std::string before = howToGoOn(bake_.maps, bake_.explicitly);
+      throw core::Error("stopped on request; no checkpoint could be written" +
+                        (before.empty() ? ", a new bake starts anew" : before));
+    }
+    throw core::Error("stopped on request, " + percent(job_) + " done" +
+                      howToGoOn(bake_.maps, bake_.explicitly));
   }
 
  private:
@@ -76,6 +78,14 @@ class Keeper {
 std::filesystem::path checkpointPath(const std::filesystem::path& maps) {
   std::filesystem::path file = maps;
   return file += ".part";
+}
+
+std::string howToGoOn(const std::filesystem::path& maps, bool explicitly) {
+  std::error_code ignored;
+  const std::filesystem::path file = checkpointPath(maps);
+  if (!std::filesystem::exists(file, ignored)) return {};
+  return std::string("; the same command") + (explicitly ? " with --resume" : "") + " goes on from " +
+         file.string();
 }
 
 core::IlluminationMaps bakeLong(raytrace::BakeJob& job, core::SceneCharts charts, const LongBake& bake,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <stop_token>
+#include <string>
 
 #include "core/maps.h"
 #include "raytrace/bake/baker.h"
@@ -30,6 +31,9 @@ struct LongBake {
 /// core::Error when stopped, with how to go on.
 core::IlluminationMaps bakeLong(raytrace::BakeJob& job, core::SceneCharts charts, const LongBake& bake,
                                 const std::stop_token& stop);
+
+/// "; the same command goes on from ..." where a checkpoint is there, else nothing. `explicitly`: LongBake.
+std::string howToGoOn(const std::filesystem::path& maps, bool explicitly);
 
 /// Removes the checkpoint of maps that are finished.
 void forgetCheckpoint(const std::filesystem::path& maps);

@@ -12,7 +12,7 @@
 namespace saccade::app {
 namespace {
 
-constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'N', 'O', 'T', 'E', '2'};
+constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'N', 'O', 'T', 'E', '3'};
 
 class Writer {
  public:
@@ -172,6 +172,7 @@ MapsNote readNote(const std::filesystem::path& file) {
   MapsNote note;
   note.maps = text(in);
   note.key = in.number<std::uint64_t>();
+  note.light = in.number<std::uint64_t>();
   note.scene.drift = in.number<double>();
   core::SceneState& state = note.scene.state;
   state.environment = in.number<std::uint64_t>();
@@ -189,6 +190,7 @@ void writeNote(const std::filesystem::path& file, const MapsNote& note) {
   out.number(kMagic);
   out.array(note.maps);
   out.number(note.key);
+  out.number(note.light);
   out.number(note.scene.drift);
   out.number(note.scene.state.environment);
   writeLights(out, note.scene.state.lights);

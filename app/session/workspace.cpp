@@ -11,6 +11,7 @@
 #include "app/session/earlier_maps.h"
 #include "app/session/lightmap_import.h"
 #include "app/session/long_bake.h"
+#include "core/atomic_file.h"
 #include "raytrace/bake/baker.h"
 #include "raytrace/bake/kept_charts.h"
 #include "raytrace/bake/kept_layout.h"
@@ -46,16 +47,33 @@ std::optional<core::IlluminationMaps> existingMaps(const std::filesystem::path& 
   }
 }
 
-void store(const std::filesystem::path& file, const core::IlluminationMaps& maps, bool namedByUser) {
+void createFolderOf(const std::filesystem::path& file) {
+  std::error_code ignored;  // writing the file reports what went wrong
+  std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), ignored);
+}
+
+/// Before a long bake, not after it. Throws core::Error.
+void checkWritable(const std::filesystem::path& file) {
+  createFolderOf(file);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw core::Error(file.string() + ": is a folder; name a file");
+  const core::AtomicFile probe(file);
+}
+
+/// Where the maps must be kept throws core::Error, with how to go on; else warns and returns false.
+bool store(const std::filesystem::path& file, const core::IlluminationMaps& maps, const BakeRequest& bake,
+           bool namedByUser) {
   try {
-    std::error_code ignored;  // writeMaps reports what went wrong
-    std::filesystem::create_directories(std::filesystem::absolute(file).parent_path(), ignored);
+    createFolderOf(file);
     core::writeMaps(file, maps);
     forgetCheckpoint(file);
+    return true;
   } catch (const core::Error& e) {
-    if (namedByUser) throw;
+    if (bake.always || namedByUser) throw core::Error(e.what() + howToGoOn(file, bake.always));
     spdlog::warn("{}; going on with the maps in memory (set XDG_CACHE_HOME or --maps to keep them)",
                  e.what());
+    return false;
   }
 }
 
@@ -96,6 +114,11 @@ void reportOwnAtlases(const raytrace::AtlasCounts& counts) {
   }
 }
 
+std::string widths(float finest, float coarsest) {
+  const std::string least = fmt::format("{:.2g}", finest), most = fmt::format("{:.2g}", coarsest);
+  return least == most ? most + " m" : least + " to " + most + " m";
+}
+
 /// Charts the scene and builds its world.
 raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
                                    const std::stop_token& stop) {
@@ -107,10 +130,14 @@ raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, co
                                                         {{}, stop});
   w.world = std::move(charts.world);
   const bool refined = raytrace::detailTexelsOf(options.quality, w.plan, charts.atlas.size) > 0;
-  spdlog::info("{} charts in {} x {} texels, {:.2g} to {:.2g} m wide; {}direct light misses {:.2g} % by them",
-               charts.atlas.chartCount, charts.atlas.size, charts.atlas.size, charts.finestMetres,
-               charts.coarsestMetres, refined ? "before its edges get finer ones " : "",
-               100 * charts.relativeError);
+  if (charts.coarsestMetres > 0) {
+    spdlog::info("{} {}: {} x {} texels of {}; {:.2g} % of direct light is finer than they hold{}",
+                 charts.atlas.chartCount, charts.atlas.chartCount == 1 ? "chart" : "charts",
+                 charts.atlas.size, charts.atlas.size, widths(charts.finestMetres, charts.coarsestMetres),
+                 100 * charts.relativeError, refined ? ", its edges get texels of their own" : "");
+  } else {
+    spdlog::info("no surface shows irradiance: all are mirrors, metal, glass or unlit, the maps are empty");
+  }
   reportOwnAtlases(charts.atlas.ownAtlases);
   if (const std::size_t n = charts.atlas.vertexLitMeshes; n > 0)
     spdlog::info("{} {} light by vertex", n, n == 1 ? "mesh keeps its" : "meshes keep their");
@@ -245,6 +272,7 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
     if (!bake.always)
       spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
                    file.string());
+    if (bake.always) checkWritable(file);
     const bool plain = bake.importFolder.empty();
     const core::SceneState state = core::sceneState(w->scene);
     std::optional<EarlierMaps> earlier;
@@ -257,8 +285,9 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const Bake
       prepared.atlas = chartReported(*w, options, bake, stop);
     w->maps = bakeNow(*w, std::move(prepared.atlas), options, bake, key,
                       prepared.keeps ? &prepared.change.kept : nullptr, stop);
-    store(file, w->maps, namedByUser);
-    if (plain) rememberMaps(w->scene, state, settingsName(options, bake), file, prepared.change.drift);
+    w->mapsAreKept = store(file, w->maps, bake, namedByUser);
+    if (plain && w->mapsAreKept)
+      rememberMaps(*w, state, settingsName(options, bake), file, prepared.change.drift);
   }
   w->world->setMaps(&w->maps);
   return w;

@@ -21,6 +21,7 @@ struct Workspace {
   core::Plan plan;
   core::IlluminationMaps maps;
   bool mapsWereThere = false;  ///< read from a file, not baked
+  bool mapsAreKept = true;     ///< in their file; false: that cannot be written, which was said
   std::unique_ptr<raytrace::World> world;
 
   Workspace() = default;

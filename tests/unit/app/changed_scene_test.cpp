@@ -153,6 +153,15 @@ TEST(ChangedScene, MapsOfAnotherSeedOrThatAreGoneAreNotGoneOnWith) {
   EXPECT_EQ(changeOf(bake(rooms.write({.lamp = 7}), "alone.maps")), "");
 }
 
+TEST(ChangedScene, MapsThatWereWrittenAnewSinceAreNotGoneOnWith) {
+  RoomsFile rooms("anew");
+  bake(rooms.write({}), "anew.maps");
+  bake(rooms.write({}), "anew.maps", "--seed 2");  // the same scene, noted elsewhere
+  const Ran ran = bake(rooms.write({.lamp = 6}), "anew.maps");
+  EXPECT_EQ(changeOf(ran), "");
+  EXPECT_NE(ran.err.find("was written anew"), std::string::npos) << ran.err;
+}
+
 TEST(ChangedScene, MapsThatKeptTexelsServeTheViewer) {
   RoomsFile rooms("shown");
   bake(rooms.write({}), "shown.maps");
@@ -171,6 +180,7 @@ TEST(ChangedScene, NoteComesBackAsItWasAndDamageIsRefused) {
   app::MapsNote note;
   note.maps = "/somewhere/x.maps";
   note.key = 42;
+  note.light = 43;
   note.scene.drift = 0.01;
   core::SceneState& state = note.scene.state;
   state.environment = 7;
@@ -194,6 +204,7 @@ TEST(ChangedScene, NoteComesBackAsItWasAndDamageIsRefused) {
   const app::MapsNote read = app::readNote(file);
   EXPECT_EQ(read.maps, note.maps);
   EXPECT_EQ(read.key, note.key);
+  EXPECT_EQ(read.light, note.light);
   EXPECT_EQ(read.scene.drift, note.scene.drift);
   EXPECT_EQ(read.scene.state.environment, 7u);
   ASSERT_EQ(read.scene.state.lights.size(), 1u);

@@ -166,11 +166,34 @@ TEST(LongBake, CheckpointThatCannotBeWrittenIsAWarningOnce) {
 }
 
 TEST(LongBake, StoppedWhereNothingCanBeWrittenSaysThatNothingIsKept) {
-  Child child(bakeArguments("/proc/saccade.maps", 1));  // not even root may make a file there
+  Child child({"render", kScene, "-o", output("x.png").string(), "--quality", "preview", "--maps",
+               "/proc/saccade.maps"});  // not even root may make a file there
   child.waitUntilBaking();
   child.send(SIGTERM);
   EXPECT_EQ(child.wait(), 1);
   EXPECT_NE(Child::errors().find("no checkpoint could be written"), std::string::npos) << Child::errors();
+}
+
+TEST(LongBake, APlaceThatCannotBeWrittenIsSaidBeforeTheBake) {
+  std::filesystem::create_directory(output("folder.maps"));
+  for (const std::filesystem::path& maps :
+       {std::filesystem::path("/proc/saccade.maps"), output("folder.maps")}) {
+    const Ran ran = saccade(line(bakeArguments(maps, 1)));
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_EQ(tests::errorLines(ran.err), 1) << ran.err;
+    EXPECT_EQ(ran.err.find("baking: "), std::string::npos) << ran.err;
+  }
+}
+
+TEST(LongBake, MapsThatCannotBeWrittenAreAnErrorThatSaysWhereTheCheckpointIs) {
+  const std::filesystem::path maps = output("quota.maps");
+  std::ofstream(output("quota.maps.part")) << "of some bake";
+  const Ran ran = saccade(line(bakeArguments(maps, 1)), "ulimit -f 16; ");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(tests::errorLines(ran.err), 1) << ran.err;
+  EXPECT_NE(ran.err.find("quota.maps: cannot be written"), std::string::npos) << ran.err;
+  EXPECT_NE(ran.err.find("--resume goes on from"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.out, "") << "no maps are there";
 }
 
 TEST(LongBake, BakeThatAnotherCommandNeedsGoesOnByItself) {
