@@ -18,11 +18,12 @@ constexpr float kDirectError = 0.04f;  // standard error that a texel is refined
 constexpr double kSure = 0.125;        // standard error, of what is allowed, in which a part's sum counts
 constexpr double kErrors = 2;          // standard errors that are added
 
-double luminanceOf(const std::uint64_t (&rgb)[3]) {
-  return (0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-          0.0722 * static_cast<double>(rgb[2])) /
-         FluxGrid::kUnitsPerWeight;
+glm::dvec3 weightOf(const FluxGrid::Cell& cell) {
+  return glm::dvec3(cell.rgb[0], cell.rgb[1], cell.rgb[2]) / static_cast<double>(FluxGrid::kUnitsPerWeight);
 }
+
+/// A change of colour alone has some too.
+double sizeOf(const glm::dvec3& change) { return core::luminance(Vec3(glm::abs(change))); }
 
 /// Differences of flux in one layer.
 class FluxChange {
@@ -35,7 +36,8 @@ class FluxChange {
 
  private:
   struct Sum {
-    double flux = 0, squares = 0, area = 0;
+    glm::dvec3 flux{0};
+    double squares = 0, area = 0;
     double error() const { return std::sqrt(squares) / area; }
   };
 
@@ -45,9 +47,10 @@ class FluxChange {
       for (int x = rect.x0; x < rect.x1; ++x) {
         const std::size_t t = static_cast<std::size_t>(y) * texels_.size() + x;
         if (texels_.chartOf(t) != chart || !now_.open(t, layer_)) continue;
-        const double d = now_.flux(t, layer_) - (layer_ < before_.layers() ? before_.flux(t, layer_) : 0);
+        const Vec3 was = layer_ < before_.layers() ? before_.flux(t, layer_) : Vec3(0);
+        const glm::dvec3 d = glm::dvec3(now_.flux(t, layer_)) - glm::dvec3(was);
         s.flux += d;
-        s.squares += d * d;
+        s.squares += sizeOf(d) * sizeOf(d);
         s.area += texels_.area(t);
       }
     }
@@ -68,7 +71,7 @@ class FluxChange {
       const Sum first = sum(chart, a), second = sum(chart, b);
       if (sure(first) && sure(second)) return std::max(most(chart, a, first), most(chart, b, second));
     }
-    return std::abs(whole.flux) / whole.area + kErrors * whole.error();
+    return sizeOf(whole.flux) / whole.area + kErrors * whole.error();
   }
 
   const TexelMap& texels_;
@@ -96,7 +99,7 @@ QuickLight::QuickLight(const core::Scene& charted, const core::Plan& plan, int s
     std::vector<DirectEstimate> found(texels.texelCount());
     directIrradiance(world, texels, areas, layer, all, options, progress, found);
     Layer& out = layers_.emplace_back();
-    for (const DirectEstimate& e : found) out.direct.push_back(core::luminance(e.irradiance));
+    for (const DirectEstimate& e : found) out.direct.push_back(e.irradiance);
     for (const float area : areas.areas(layer)) out.open.push_back(area > 0);
   }
   ParticleState particles(world, texels.texelCount(), layerCount);
@@ -107,10 +110,9 @@ QuickLight::QuickLight(const core::Scene& charted, const core::Plan& plan, int s
   const double watts = wattsPerWeight(world, kParticles);
   for (int layer = 0; layer < layerCount; ++layer) {
     for (std::size_t t = 0; t < texels.texelCount(); ++t) {
-      double weight = luminanceOf(particles.flux.cell(t, ParticleState::indirectPlane(layer)).rgb);
-      if (particles.caustics)
-        weight += luminanceOf(particles.flux.cell(t, particles.causticPlane(layer)).rgb);
-      layers_[static_cast<std::size_t>(layer)].flux.push_back(static_cast<float>(weight * watts));
+      glm::dvec3 weight = weightOf(particles.flux.cell(t, ParticleState::indirectPlane(layer)));
+      if (particles.caustics) weight += weightOf(particles.flux.cell(t, particles.causticPlane(layer)));
+      layers_[static_cast<std::size_t>(layer)].flux.emplace_back(weight * watts);
     }
   }
   if (stop.stop_requested()) throw core::Error("stopped on request");
@@ -122,9 +124,9 @@ std::vector<double> boundOfChange(const TexelMap& texels, const QuickLight& now,
   for (int layer = 0; layer < now.layers(); ++layer) {
     for (std::size_t t = 0; t < texels.texelCount(); ++t) {
       if (texels.chartOf(t) < 0 || !now.open(t, layer)) continue;
-      const double was = layer < before.layers() ? before.direct(t, layer) : 0;
+      const Vec3 was = layer < before.layers() ? before.direct(t, layer) : Vec3(0);
       double& most = direct[static_cast<std::size_t>(texels.chartOf(t))];
-      most = std::max(most, std::abs(now.direct(t, layer) - was));
+      most = std::max(most, sizeOf(now.direct(t, layer) - was));
     }
   }
   std::vector<double> bound(direct.size(), 0);

@@ -2,10 +2,11 @@
 //
 // Direct light is taken at a few points of each texel, particles are traced as at quality preview, in both
 // states from the same random numbers: what the change does not reach is the same to the last bit, and its
-// difference 0. Where it reaches, direct light counts texel by texel. Of particles' flux the differences of
-// texels are summed over the smallest parts of a chart (halves of halves) in which that sum is sure to an
-// eighth of what is allowed; two standard errors are added. Charts too small for that get the whole
-// uncertainty, and so are rather baked again than kept.
+// difference 0. Differences of colour count as those of brightness do: by channel, whatever their sign,
+// weighed like luminance. Where the change reaches, direct light counts texel by texel. Of particles' flux
+// the differences of texels are summed over the smallest parts of a chart (halves of halves) in which that
+// sum is sure to an eighth of what is allowed; two standard errors are added. Charts too small for that get
+// the whole uncertainty, and so are rather baked again than kept.
 #pragma once
 
 #include <stop_token>
@@ -25,16 +26,16 @@ class QuickLight {
              const std::stop_token& stop);
 
   int layers() const { return static_cast<int>(layers_.size()); }
-  /// Luminance of direct irradiance, W/m^2; 0 for texels that are covered.
-  float direct(std::size_t texel, int layer) const { return of(layer).direct[texel]; }
-  /// The same of flux that came by other surfaces, W.
-  float flux(std::size_t texel, int layer) const { return of(layer).flux[texel]; }
+  /// Direct irradiance, W/m^2; 0 for texels that are covered.
+  const core::Vec3& direct(std::size_t texel, int layer) const { return of(layer).direct[texel]; }
+  /// Flux that came by other surfaces, W.
+  const core::Vec3& flux(std::size_t texel, int layer) const { return of(layer).flux[texel]; }
   /// Some of the texel's surface is not covered.
   bool open(std::size_t texel, int layer) const { return of(layer).open[texel] != 0; }
 
  private:
   struct Layer {
-    std::vector<float> direct, flux;
+    std::vector<core::Vec3> direct, flux;
     std::vector<char> open;
   };
   const Layer& of(int layer) const { return layers_[static_cast<std::size_t>(layer)]; }
@@ -42,8 +43,8 @@ class QuickLight {
   std::vector<Layer> layers_;
 };
 
-/// Luminance of irradiance, W/m^2, by chart of `texels`, which are those of the present scene. Texels that
-/// are covered now do not count. `before` may lack texels of charts that are new.
+/// Of irradiance, W/m^2, weighed like luminance, by chart of `texels`, which are those of the present scene.
+/// Texels that are covered now do not count. `before` may lack texels of charts that are new.
 std::vector<double> boundOfChange(const TexelMap& texels, const QuickLight& now, const QuickLight& before,
                                   double allowed);
 

@@ -46,12 +46,6 @@ BakeOptions small(int threads) {
   return o;
 }
 
-std::stop_token stopped() {
-  std::stop_source source;
-  source.request_stop();
-  return source.get_token();
-}
-
 TEST(BakeJob, PausedAfterEveryPieceOfWorkOnAnyThreadsTheBitsAreTheSame) {
   const Charted room;
   const core::IlluminationMaps whole =

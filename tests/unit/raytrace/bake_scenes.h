@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,6 +76,12 @@ class SceneBuilder {
     face(lo + x, y, z);
   }
 
+  /// A closed room of 2 m from x on, of albedo 1/2; below its ceiling a lamp of 0.6 m from `lampX` on.
+  void room(float x, float lampX, float radiance) {
+    box(matte(0.5f), Vec3(x, 0, 0), Vec3(x + 2, 2, 2), true);
+    quad(matte(0, Vec3(radiance)), Vec3(lampX, 1.9f, 0.7f), Vec3(0.6f, 0, 0), Vec3(0, 0, 0.6f));
+  }
+
   /// A disk facing down as a fan of `sides` triangles with the true disk's area.
   int disk(const core::Material& material, Vec3 center, float radius, int sides) {
     core::Mesh mesh;
@@ -104,6 +111,22 @@ class SceneBuilder {
     return static_cast<int>(scene.objects.size()) - 1;
   }
 };
+
+/// A job that is given it pauses after each piece of work.
+inline std::stop_token stopped() {
+  std::stop_source source;
+  source.request_stop();
+  return source.get_token();
+}
+
+/// Few particles, quality medium.
+inline BakeOptions mediumBake(std::uint64_t photons) {
+  BakeOptions o;
+  o.quality = "medium";
+  o.photons = photons;
+  o.threads = 2;
+  return o;
+}
 
 /// A scene with its maps, ready for look-ups.
 class Baked {

@@ -31,8 +31,7 @@ core::Scene sceneOf(const Room& r) {
   Builder b;
   for (int i = 0; i < r.rooms; ++i) {
     const float x = 2.2f * static_cast<float>(i), lamp = x + (r.lampMoved && i == 0 ? 0.3f : 0.7f);
-    b.box(Builder::matte(0.5f), Vec3(x, 0, 0), Vec3(x + 2, 2, 2), true);
-    b.quad(Builder::matte(0, Vec3(5)), Vec3(lamp, 1.9f, 0.7f), Vec3(0.6f, 0, 0), Vec3(0, 0, 0.6f));
+    b.room(x, lamp, 5);
   }
   const Vec3 size(0.4f, 0.5f, 0.4f);
   for (const float x : {r.boxX, 2.7f}) {
@@ -49,13 +48,7 @@ core::Plan planOf() {
   return plan;
 }
 
-BakeOptions quick() {
-  BakeOptions o;
-  o.quality = "medium";
-  o.photons = 1 << 20;
-  o.threads = 2;
-  return o;
-}
+BakeOptions quick() { return mediumBake(1 << 20); }
 
 /// A scene with maps, baked whole.
 struct Earlier {
@@ -190,6 +183,25 @@ TEST(ChangedObjects, BlackBoxThatTurnsWhiteBakesWhatItLights) {
   EXPECT_LT(again.change.keptCharts, 12u) << "walls beside it get what it reflects";
   EXPECT_GE(keptTexels(again, earlier), texelsIn(again, 2.2f, 4.2f));
   EXPECT_LT(worstChart(again, again.bake(nullptr)), qualityOf("medium").errorTarget);
+}
+
+/// Luminance alone would not tell: the walls beside the box get as much light as before, of another colour.
+TEST(ChangedObjects, ColourOfTheSameBrightnessIsAChange) {
+  constexpr Vec3 kRed(0.9f, 0.2f, 0.2f);
+  const float green =
+      (core::luminance(kRed) - core::luminance(Vec3(0.2f, 0, 0.2f))) / core::luminance({0, 1, 0});
+  const auto painted = [](const Vec3& color) {
+    core::Scene scene = sceneOf({.rooms = 1});
+    for (core::Object& o : scene.objects) {
+      core::Material& material = scene.materials[static_cast<std::size_t>(o.material)];
+      if (o.bounds.hi.y < 0.6f && o.bounds.lo.y > 0.01f) material.baseColor = color;
+    }
+    return scene;
+  };
+  const Earlier earlier(painted(kRed));
+  const Again again(painted({0.2f, green, 0.2f}), earlier);
+  EXPECT_EQ(again.change.charts, 12u);
+  EXPECT_LT(again.change.keptCharts, 12u);
 }
 
 TEST(ChangedObjects, BoxThatComesAndGoesBringsBackTheFirstMapsWhereItsRoomIs) {

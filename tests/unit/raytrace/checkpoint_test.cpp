@@ -43,12 +43,6 @@ struct Room {
   }
 };
 
-std::stop_token stopped() {
-  std::stop_source source;
-  source.request_stop();
-  return source.get_token();
-}
-
 std::filesystem::path fileNamed(const std::string& name) { return tests::temporaryFolder() / name; }
 
 std::string bytesOf(const std::filesystem::path& file) {

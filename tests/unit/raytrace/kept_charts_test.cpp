@@ -18,11 +18,8 @@ using Builder = SceneBuilder;
 /// Two closed rooms side by side, a lamp in each; and a point light in the first.
 core::Scene twoRooms(float lampOfFirst, float lampOfSecond, Vec3 pointLight) {
   Builder b;
-  for (const float x : {0.0f, 2.2f}) {
-    b.box(Builder::matte(0.5f), Vec3(x, 0, 0), Vec3(x + 2, 2, 2), true);
-    b.quad(Builder::matte(0, Vec3(x == 0 ? lampOfFirst : lampOfSecond)), Vec3(x + 0.7f, 1.9f, 0.7f),
-           Vec3(0.6f, 0, 0), Vec3(0, 0, 0.6f));
-  }
+  b.room(0, 0.7f, lampOfFirst);
+  b.room(2.2f, 2.9f, lampOfSecond);
   core::PunctualLight light;
   light.name = "bulb";
   light.position = Vec3(0.4f, 0.5f, 0.4f);
@@ -31,13 +28,7 @@ core::Scene twoRooms(float lampOfFirst, float lampOfSecond, Vec3 pointLight) {
   return std::move(b.scene);
 }
 
-BakeOptions quick() {
-  BakeOptions o;
-  o.quality = "medium";
-  o.photons = 1 << 18;
-  o.threads = 2;
-  return o;
-}
+BakeOptions quick() { return mediumBake(1 << 18); }
 
 struct State {
   core::Scene scene;
@@ -133,8 +124,7 @@ TEST(KeptCharts, EmissionThatChangesIsNamedByItsObject) {
 
 TEST(KeptCharts, OnlyLightThatChangesBakesEverythingAgain) {
   Builder b;
-  b.box(Builder::matte(0.5f), Vec3(0), Vec3(2), true);
-  b.quad(Builder::matte(0, Vec3(5)), Vec3(0.7f, 1.9f, 0.7f), Vec3(0.6f, 0, 0), Vec3(0, 0, 0.6f));
+  b.room(0, 0.7f, 5);
   core::Scene brighter = b.scene;
   brighter.materials.back().emission *= 2.0f;
   const State before(std::move(b.scene));
