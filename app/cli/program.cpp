@@ -29,6 +29,7 @@ int runProgram(int argc, const char* const* argv, const std::vector<AddCommand>&
   addBakeCommand(program, run);
   addRenderCommand(program, run);
   addWalkCommand(program, run);
+  addReplayCommand(program, run);
   addCompareCommand(program, run);
   for (const AddCommand add : further) add(program, run);
   try {
