@@ -19,6 +19,8 @@
 namespace saccade::app {
 namespace {
 
+std::string objectCount(std::size_t n) { return std::to_string(n) + (n == 1 ? " object" : " objects"); }
+
 namespace fs = std::filesystem;
 
 constexpr std::size_t kStrangersNamed = 5;
@@ -125,11 +127,11 @@ void readAtlas(const fs::path& file, const core::Scene& scene, float scale, core
     throw core::Error(file.string() + ": no node of the scene has a second UV set to place it by");
   if (!takers.unable.empty())
     report.warnings.push_back(
-        fmt::format("{} objects have no second UV set; they are baked", takers.unable.size()));
+        fmt::format("{} without a second UV set: baked", objectCount(takers.unable.size())));
   out.images.push_back(readIrradiance(file, scale, budget));
   for (const std::size_t o : takers.able) out.imageOfObject[o] = 0;
-  report.taken.push_back(fmt::format("{} ({}x{}): {} objects", file.filename().string(),
-                                     out.images[0].width(), out.images[0].height(), takers.able.size()));
+  report.taken.push_back(fmt::format("{} ({}x{}): {}", file.filename().string(), out.images[0].width(),
+                                     out.images[0].height(), objectCount(takers.able.size())));
 }
 
 }  // namespace
@@ -165,8 +167,8 @@ raytrace::ImportedLight readLightmaps(const fs::path& folder, const core::Scene&
     if (takers.able.empty()) continue;
     out.images.push_back(readIrradiance(files[0], scale, budget));
     for (const std::size_t o : takers.able) out.imageOfObject[o] = static_cast<int>(out.images.size()) - 1;
-    report.taken.push_back(fmt::format("{} ({}x{}): node '{}', {} objects", shown, out.images.back().width(),
-                                       out.images.back().height(), name, takers.able.size()));
+    report.taken.push_back(fmt::format("{} ({}x{}): node '{}', {}", shown, out.images.back().width(),
+                                       out.images.back().height(), name, objectCount(takers.able.size())));
   }
   if (strangers > kStrangersNamed)
     report.warnings.push_back("and " + std::to_string(strangers - kStrangersNamed) +

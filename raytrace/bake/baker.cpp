@@ -60,6 +60,11 @@ bool BakeJob::advance(const std::stop_token& pause, const BakeReport& report) {
 std::uint64_t BakeJob::settingsHash() const {
   core::ContentHash hash;
   hash.add(options_.quality);
+  // Another build may stand for something else by the same name.
+  for (const int n :
+       {quality_.causticShare, quality_.directSamples, quality_.wholePoints, quality_.gatherRays})
+    hash.add(n);
+  hash.add(quality_.detailError);
   hash.add(options_.photons);
   hash.add(options_.seed);
   hash.add(static_cast<std::uint64_t>(options_.detailTexels));

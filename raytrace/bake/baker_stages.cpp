@@ -98,6 +98,7 @@ void BakeJob::addGather(int layer) {
 
 std::vector<LayerLight> BakeJob::directLayers() {
   std::vector<LayerLight> layers;
+  layers.reserve(static_cast<std::size_t>(layers_));
   for (int layer = 0; layer < layers_; ++layer)
     layers.push_back({direct_[static_cast<std::size_t>(layer)], open_.areas(layer),
                       options_.kept ? &options_.kept->keep : nullptr});

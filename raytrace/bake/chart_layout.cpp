@@ -366,8 +366,9 @@ core::MeshCharts ChartLayout::vertexLitMesh(std::uint32_t m, int size) const {
   std::vector<core::Vec2> uv;
   uv.reserve(vertices_[m].numberOf.size());
   for (const std::uint32_t n : vertices_[m].numberOf) {
-    const core::Vec2 texel(static_cast<float>(place.x + kBorder) + static_cast<float>(n % width),
-                           static_cast<float>(place.y + kBorder) + static_cast<float>(n / width));
+    const std::uint32_t row = n / width, column = n % width;
+    const core::Vec2 texel(static_cast<float>(place.x + kBorder) + static_cast<float>(column),
+                           static_cast<float>(place.y + kBorder) + static_cast<float>(row));
     uv.push_back((texel + 0.5f) / static_cast<float>(size));
   }
   core::MeshCharts out = wholeMesh(scene_.meshes[m], std::move(uv));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'B', 'A', 'K', 'E', '\n'};
 /// Also to be raised when a stage's results come to mean something else.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 /// Results are looked at in words of so many bytes; fewer zeros in a row than kShortestRun are kept as they
 /// are.

@@ -78,7 +78,7 @@ TEST(LightmapImport, FilesAreMatchedToNodesAndTheRestIsReported) {
   app::LightmapReport report;
   const raytrace::ImportedLight light = app::readLightmaps(folder, scene, 2, {}, report);
   ASSERT_EQ(light.images.size(), 1u);
-  EXPECT_EQ(report.taken, std::vector<std::string>{"floor.lightmap.png (64x64): node 'floor', 1 objects"});
+  EXPECT_EQ(report.taken, std::vector<std::string>{"floor.lightmap.png (64x64): node 'floor', 1 object"});
   EXPECT_EQ(report.baked, std::vector<std::string>{"shelf"});
   ASSERT_EQ(report.warnings.size(), 2u);
   EXPECT_NE(report.warnings[0].find("'shelf' has parts without a second UV set"), std::string::npos);
