@@ -143,6 +143,7 @@ class Layout {
     std::vector<Extent> extents(static_cast<std::size_t>(count));
     for (std::size_t v = 0; v < uv.size(); ++v) extents[static_cast<std::size_t>(chartOf[v])].add(uv[v]);
     std::vector<Rect> out;
+    out.reserve(extents.size());
     for (const Extent& e : extents) out.push_back(e.rect());
     return out;
   }

@@ -139,6 +139,7 @@ core::LightTextures makeLightTextures(const World& world, const core::Illuminati
   {
     const TexelMap texels(scene, lightSide(maps));
     std::vector<core::ImageRgb> layers;
+    layers.reserve(static_cast<std::size_t>(maps.layers));
     for (int layer = 0; layer < maps.layers; ++layer)
       layers.push_back(irradiancePicture(world, maps, layer, threads, {{}, progress.stop}));
     std::vector<Vec3> light(texels.texelCount());
