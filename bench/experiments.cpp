@@ -1,4 +1,5 @@
 // The list of experiments: one line each, in the order in which they run.
+#include "bench/cache/cache.h"
 #include "bench/growth/growth.h"
 #include "bench/hard/hard.h"
 #include "bench/harness/experiment.h"
@@ -80,6 +81,10 @@ const std::vector<Experiment>& allExperiments() {
        "Is the frame without tracing at most half as long again as its bare draw?",
        {Suite::paper},
        &measureUntraced},
+      {"cache",
+       "Do aging and warping stay linear in the cached samples, up to a million?",
+       {Suite::paper},
+       &measureCache},
       {"hard", "How far off are the numerical hard cases?", {Suite::hard}, &measureHardCases},
   };
   return experiments;

@@ -26,13 +26,22 @@ FrozenCache::FrozenCache(const render::SampleCache& cache, std::size_t samples)
     ages_.back().batch.samples.push_back(sample);
     ++size_;
   });
-  std::size_t excess = size_ - std::min(size_, samples);
+  dropOldest(size_ - std::min(size_, samples));
+}
+
+void FrozenCache::dropOldest(std::size_t excess) {
   size_ -= excess;
   for (Age& a : ages_) {
     const std::size_t n = std::min(excess, a.batch.samples.size());
     a.batch.samples.erase(a.batch.samples.begin(), a.batch.samples.begin() + static_cast<std::ptrdiff_t>(n));
     excess -= n;
   }
+}
+
+FrozenCache FrozenCache::youngest(std::size_t samples) const {
+  FrozenCache part = *this;
+  part.dropOldest(size_ - std::min(size_, samples));
+  return part;
 }
 
 void FrozenCache::thaw(const core::View& view, render::SampleCache& cache) const {

@@ -20,9 +20,13 @@ class FrozenCache {
   /// Brings an empty cache to the frozen one's camera age and samples. `view` is any view of the walk's focal
   /// length.
   void thaw(const core::View& view, render::SampleCache& cache) const;
+  /// The youngest of them.
+  FrozenCache youngest(std::size_t samples) const;
   std::size_t size() const { return size_; }
 
  private:
+  void dropOldest(std::size_t excess);
+
   struct Age {
     std::uint64_t age;
     core::SampleBatch batch;

@@ -83,6 +83,11 @@ SECTIONS: dict[str, Section] = {
         "What do drawing, warping, splatting, read-back and composing cost beside the bare draw?",
         plain,
     ),
+    "cache": Section(
+        "Large caches",
+        "Do aging, warping and splatting stay linear in the cached samples?",
+        partial(growth, x_units={"": "cached samples"}),
+    ),
     "gallery-walk": Section(
         "The gallery walk", "Does the frame rate hold, and how many new samples does a frame get?", plain
     ),
