@@ -164,7 +164,11 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str()
       ->group(group);
-  command.add_option("--cache-mb", o.cacheMb, "Memory for cached samples, MB; 0 turns reuse off")
+  command
+      .add_option(
+          "--cache-mb", o.cacheMb,
+          "Memory for cached samples, MB; when it is used up the oldest, least salient ones leave. 0 turns "
+          "reuse off")
       ->check(CLI::Range(0, 65536))
       ->capture_default_str()
       ->group(group);

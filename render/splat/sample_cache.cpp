@@ -128,6 +128,7 @@ std::size_t SampleCache::add(const core::SampleBatch& batch, std::uint64_t camer
       g->pages.push_back(std::move(page));
     }
     Page& page = *g->pages.back();
+    page.arrival[page.count] = g->arrivals++;
     page.set(page.count++, s);
     if (s.id >= counts_.size()) counts_.resize(s.id + std::size_t{1});
     ++counts_[s.id][s.level];
@@ -154,7 +155,7 @@ SampleCache::Generation& SampleCache::generation(std::uint64_t age) {
   return *it;
 }
 
-/// A page for samples of an age: a free one, a new one, or the oldest of a generation older than that. Null
+/// A page for samples of an age: a free one, a new one, or the last of the oldest generation. Null
 /// where there is none.
 SampleCache::PagePtr SampleCache::takePage(std::uint64_t forAge) {
   if (freePages_.empty() && allocatedPages_ == maxPages_) {
@@ -162,7 +163,7 @@ SampleCache::PagePtr SampleCache::takePage(std::uint64_t forAge) {
       generations_.pop_front();
     }
     if (generations_.empty() || generations_.front().age >= forAge) return nullptr;
-    dropFrontPage();
+    dropPageOfOldest();
   }
   if (freePages_.empty()) {
     ++allocatedPages_;
@@ -173,11 +174,34 @@ SampleCache::PagePtr SampleCache::takePage(std::uint64_t forAge) {
   return page;
 }
 
-void SampleCache::dropFrontPage() {
+/// The page of those that arrived last, which is the least salient.
+void SampleCache::dropPageOfOldest() {
   Generation& g = generations_.front();
-  releasePage(std::move(g.pages.front()));
-  g.pages.erase(g.pages.begin());
+  if (!g.inOrder) sortByArrival(g);
+  releasePage(std::move(g.pages.back()));
+  g.pages.pop_back();
   if (g.pages.empty()) generations_.pop_front();
+}
+
+/// At most once a generation and camera change: only deletions disturb the order.
+void SampleCache::sortByArrival(Generation& g) {
+  struct Arrived {
+    std::uint32_t arrival;
+    core::Sample sample;
+  };
+  std::vector<Arrived> all;
+  for (const PagePtr& page : g.pages) {
+    for (int i = 0; i < page->count; ++i) all.push_back({page->arrival[i], page->get(i)});
+  }
+  std::sort(all.begin(), all.end(), [](const Arrived& a, const Arrived& b) { return a.arrival < b.arrival; });
+  auto next = all.begin();
+  for (const PagePtr& page : g.pages) {
+    for (int i = 0; i < page->count; ++i, ++next) {
+      page->arrival[i] = next->arrival;
+      page->set(i, next->sample);
+    }
+  }
+  g.inOrder = true;
 }
 
 /// Keeps a page for reuse, with whatever lives on it forgotten.
@@ -263,7 +287,9 @@ void SampleCache::compact(Generation& g) {
       dropDeadEnd(g);
       if (p >= g.pages.size() || i >= page.count) break;
       Page& last = *g.pages.back();
+      page.arrival[i] = last.arrival[last.count - 1];
       page.set(i, last.get(--last.count));
+      g.inOrder = false;
     }
   }
   dropDeadEnd(g);

@@ -6,6 +6,11 @@
 // Aging deletes by object and age, MAX_AGE and the memory bound delete whole ages: all of them the oldest end
 // or one generation, and every pass reads memory in order.
 //
+// What leaves when the memory is used up: of the oldest age the samples that were traced last. The region
+// queue hands out the most salient work first (priority, a tenth less with each level), so an age's samples
+// arrive in the order of their salience; nothing else has to be told to the cache, and a replay drops the
+// same.
+//
 // How it stays small at rest: nothing is warped while the camera stands, and the next warp drops a sample
 // that lies on the same pixel (same object, visible) as a sample of a younger age whose level is the same or
 // coarser: the younger one knows that point better and covers at least as much. A pixel thus keeps at most
@@ -34,7 +39,7 @@ struct AgingOptions {
 
 class SampleCache {
  public:
-  /// Keeps at most `maxBytes` of samples; less than one page (14 KiB) keeps nothing.
+  /// Keeps at most `maxBytes` of samples; less than one page (15 KiB) keeps nothing.
   explicit SampleCache(std::size_t maxBytes);
 
   struct AgingResult {
@@ -51,9 +56,9 @@ class SampleCache {
   std::uint64_t cameraAge() const { return cameraAge_; }
 
   /// Stores a batch traced for the camera of age `cameraAge` (<= cameraAge(); late batches are welcome). When
-  /// the memory is used up the oldest samples leave; samples as old as the oldest stored are then refused.
-  /// Samples with a position, normal or correction that is not finite are ignored. Returns how many were
-  /// stored.
+  /// the memory is used up the oldest samples leave, of one age those that arrived last; samples as old as
+  /// the oldest stored are then refused. Samples with a position, normal or correction that is not finite are
+  /// ignored. Returns how many were stored.
   std::size_t add(const core::SampleBatch& batch, std::uint64_t cameraAge);
 
   /// Takes over samples of an earlier run: before the first age(), age by age, oldest first, with what
@@ -117,6 +122,7 @@ class SampleCache {
     std::uint8_t level[kCapacity];  ///< 0 = dead, removed by the next compact()
     std::uint8_t thread[kCapacity];
     bool fromDepth[kCapacity];
+    std::uint32_t arrival[kCapacity];  ///< number within the age
     int count = 0;
 
     core::Vec3 position(int i) const { return {px[i], py[i], pz[i]}; }
@@ -130,6 +136,8 @@ class SampleCache {
     std::uint64_t age = 0;
     float pixelsPerRadian = 0;  ///< of the view it was traced in, at the image's centre
     std::vector<PagePtr> pages;
+    std::uint32_t arrivals = 0;  ///< so far
+    bool inOrder = true;         ///< the samples lie in the order of their arrival
   };
 
   /// Where a sample falls in a new image.
@@ -151,7 +159,8 @@ class SampleCache {
 
   Generation& generation(std::uint64_t age);
   PagePtr takePage(std::uint64_t forAge);
-  void dropFrontPage();
+  void dropPageOfOldest();
+  static void sortByArrival(Generation& g);
   void releasePage(PagePtr page);
   void forget(const Page& page, int slot) { --counts_[page.id[slot]][page.level[slot]], --size_; }
   void dropGenerations(std::uint64_t olderThan);

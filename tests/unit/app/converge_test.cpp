@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <set>
 
 #include "app/session/camera_path.h"
 #include "tests/unit/app/fixtures.h"
@@ -160,6 +162,57 @@ TEST_P(Walk, OfSixtyFramesThenRestEqualsRayTraced) {
   EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
 }
 INSTANTIATE_TEST_SUITE_P(Threads, Walk, testing::Values(0, 1, 2, 8));
+
+TEST_P(Walk, OfAFullCacheThenRestEqualsRayTraced) {
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  FrameLoopOptions options{.threads = GetParam(), .asynchronousAnalysis = GetParam() > 0};
+  options.corrective.cacheMb = 1;  // some 17,000 samples
+  FrameLoop loop(workspace_, *gl_.renderer, options);
+  for (int i = 1; i <= 8; ++i) loop.step(path.at(i / 25.0), {640, 480}, FrameBudget::firstSamples(6000));
+  const std::size_t bound = std::size_t{1} << 20;
+  EXPECT_LE(loop.cache().bytes(), bound);
+  EXPECT_GT(loop.cache().bytes(), bound - (std::size_t{16} << 10)) << "full";
+  loop.step(camera_, {640, 480}, FrameBudget::untilConverged());
+  ASSERT_TRUE(loop.converged());
+  EXPECT_LE(loop.cache().bytes(), bound);
+  EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
+}
+
+TEST_F(LoopTest, AFullCacheKeepsWhatWasHandedOutFirstOfTheOldestAge) {
+  // Beside a walk whose cache has room for all: of the oldest age there is a prefix, in the queue's order.
+  using PixelSet = std::set<std::pair<int, int>>;
+  std::vector<std::pair<int, int>> order;
+  std::uint64_t oldest = 0;
+  PixelSet kept[2];
+  for (const int run : {0, 1}) {
+    FrameLoopOptions options{.threads = 0};
+    options.corrective.cacheMb = run == 0 ? 1 : 64;
+    options.corrective.delta = 2;
+    options.corrective.attention.order = attention::Order::largest;  // whatever the picture shows
+    FrameLoop loop(workspace_, *gl_.renderer, options);
+    if (run == 1) {
+      loop.onBatch = [&](core::SampleBatch& batch) {
+        if (batch.epoch != oldest) return;
+        for (const core::Sample& s : batch.samples) order.push_back({s.x, s.y});
+      };
+    }
+    const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+    for (int i = 1; i <= 8; ++i) loop.step(path.at(i / 25.0), {640, 480}, FrameBudget::firstSamples(6000));
+    loop.cache().forEach([&](const core::Sample& s, std::uint64_t age) {
+      if (oldest == 0) oldest = age;
+      if (age == oldest) kept[run].insert({s.x, s.y});
+    });
+  }
+  ASSERT_FALSE(kept[0].empty());
+  ASSERT_LT(kept[0].size(), kept[1].size());
+  std::size_t ofPrefix = 0;
+  for (const auto& pixel : order) {
+    if (ofPrefix == kept[0].size()) break;
+    if (!kept[1].contains(pixel)) continue;  // a younger sample on the same pixel took its place
+    ++ofPrefix;
+    EXPECT_TRUE(kept[0].contains(pixel)) << pixel.first << ", " << pixel.second;
+  }
+}
 
 TEST_P(Walk, BudgetsOfAllKindsMayFollowEachOther) {
   FrameLoop loop(workspace_, *gl_.renderer, {.threads = GetParam()});

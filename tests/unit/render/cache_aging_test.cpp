@@ -252,6 +252,55 @@ TEST(SampleCacheMemory, TheOldestLeaveFirst) {
   EXPECT_EQ(cache.count(1, 4), 0u);
 }
 
+TEST(SampleCacheMemory, OfTheOldestAgeTheLeastSalientLeaveFirst) {
+  // Salience is the order of arrival: object 1 before 2 before 3. Object 2 is deleted by the aging test,
+  // which moves samples about.
+  const Vec3 near = eyeOff(0), far = eyeOff(40);
+  SampleCache probe(kPlenty);
+  probe.age(viewFrom(near), {});
+  probe.add(repeated(sample(1, 4, Vec3(0), {0, 1, 0}, near), 1), 1);
+  SampleCache cache(8 * probe.bytes());
+  cache.age(viewFrom(near), {});
+  SampleBatch batch;
+  for (std::uint32_t id = 1; id <= 3; ++id) {
+    for (std::size_t i = 0; i < 600; ++i) {
+      Sample s = sample(id, 4, Vec3(0), {0, 1, 0}, id == 2 ? near : far);
+      s.correction.x = static_cast<float>(batch.samples.size());
+      batch.samples.push_back(s);
+    }
+  }
+  ASSERT_EQ(cache.add(batch, 1), 1800u);  // in eight pages, the last of which holds 8
+  ASSERT_EQ(cache.age(viewFrom(far), {10, 0.1f, 30}).deleted, 600u);
+  ASSERT_EQ(cache.size(), 1200u);  // in five pages
+
+  const auto oldest = [&] {
+    std::set<float> all;
+    cache.forEach([&](const Sample& s, std::uint64_t age) {
+      if (age == 1) all.insert(s.correction.x);
+    });
+    return all;
+  };
+  std::size_t left = 1200;
+  for (std::size_t pages = 1; pages <= 8; ++pages) {
+    ASSERT_EQ(cache.add(repeated(sample(4, 4, Vec3(0), {0, 1, 0}, far), kPage), 2), kPage);
+    // Three pages are free; then a page of the oldest for each, the incomplete one first.
+    const std::size_t dropped = pages <= 3 ? 0 : std::min<std::size_t>(1200, 176 + (pages - 4) * kPage);
+    left = 1200 - dropped;
+    const std::set<float> kept = oldest();
+    ASSERT_EQ(kept.size(), left) << pages;
+    EXPECT_EQ(cache.count(1, 4), std::min<std::size_t>(left, 600));
+    EXPECT_EQ(cache.count(3, 4), left - std::min<std::size_t>(left, 600));
+    EXPECT_EQ(cache.size(), left + pages * kPage);
+    std::size_t rank = 0;  // the first `left` of objects 1 and 3 in the order of their arrival
+    for (const float serial : kept) {
+      EXPECT_EQ(serial, static_cast<float>(rank < 600 ? rank : rank + 600));
+      ++rank;
+    }
+  }
+  EXPECT_EQ(left, 0u);
+  EXPECT_EQ(cache.add(repeated(sample(4, 4, Vec3(0), {0, 1, 0}, far), 1), 2), 0u);
+}
+
 TEST(SampleCacheMemory, NoMemoryKeepsNothing) {
   SampleCache cache(100);
   cache.age(viewFrom(eyeOff(0)), {});
