@@ -15,6 +15,7 @@
 #include "bench/peers/peers.h"
 #include "bench/quality/quality.h"
 #include "bench/rays/rays.h"
+#include "bench/recording/recording.h"
 #include "bench/still/still.h"
 
 namespace saccade::bench {
@@ -77,6 +78,10 @@ const std::vector<Experiment>& allExperiments() {
        "Does the frame rate hold in the museum hall at 8 and 25 frames a second?",
        {Suite::paper},
        &measureGalleryWalk},
+      {"recording",
+       "What does recording a walk cost the frame, and how large does it get?",
+       {Suite::paper},
+       &measureRecording},
       {"untraced",
        "Is the frame without tracing at most half as long again as its bare draw?",
        {Suite::paper},

@@ -14,8 +14,10 @@ namespace saccade::app {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{100};  ///< of transactions that are old enough
-constexpr std::size_t kWakeBytes = std::size_t{1} << 20;
+/// The writer wakes by itself so often: being woken for each frame it would take the frame loop's core away
+/// when all are busy.
+constexpr std::chrono::milliseconds kPoll{100};
+constexpr std::size_t kWakeBytes = std::size_t{16} << 20;  ///< wake it earlier for so much
 
 double threadCpuSeconds() {
   std::timespec t{};
@@ -67,7 +69,7 @@ std::size_t SessionRecorder::bytesOf(const Item& item) {
 
 void SessionRecorder::push(Item item) {
   const std::size_t bytes = bytesOf(item);
-  bool wake = std::holds_alternative<PendingFrame>(item);
+  bool wake = false;
   {
     std::unique_lock lock(mutex_);
     const bool room =
@@ -80,7 +82,7 @@ void SessionRecorder::push(Item item) {
                     file_.string());
       return;
     }
-    wake = wake || (waitingBytes_ / kWakeBytes != (waitingBytes_ + bytes) / kWakeBytes);
+    wake = waitingBytes_ / kWakeBytes != (waitingBytes_ + bytes) / kWakeBytes;
     waitingBytes_ += bytes;
     waiting_.push_back(std::move(item));
   }
@@ -127,7 +129,7 @@ void SessionRecorder::writeAll(SessionWriter& writer) {
 /// Nothing after kPoll, or when there is nothing more to come.
 std::deque<SessionRecorder::Item> SessionRecorder::waitForItems() {
   std::unique_lock lock(mutex_);
-  arrived_.wait_for(lock, kPoll, [this] { return ending_ || !waiting_.empty(); });
+  arrived_.wait_for(lock, kPoll, [this] { return ending_ || waitingBytes_ >= kWakeBytes; });
   return std::exchange(waiting_, {});
 }
 

@@ -91,6 +91,7 @@ SECTIONS: dict[str, Section] = {
     "gallery-walk": Section(
         "The gallery walk", "Does the frame rate hold, and how many new samples does a frame get?", plain
     ),
+    "recording": Section("Recording", "What does recording a walk cost the frame, and how large does it get?", plain),
     "growth": Section(
         "Growth",
         "How do frame time and memory grow with the scene, the cache, the picture and the threads?",
