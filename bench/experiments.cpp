@@ -17,6 +17,7 @@
 #include "bench/rays/rays.h"
 #include "bench/recording/recording.h"
 #include "bench/still/still.h"
+#include "bench/validity/validity.h"
 
 namespace saccade::bench {
 
@@ -59,6 +60,10 @@ const std::vector<Experiment>& allExperiments() {
        "How soon is which renderer as near to the truth: Blender's Cycles, our path tracer, our corrections?",
        {},
        &measurePeers},
+      {"validity",
+       "How valid are the cached samples that aging keeps, and how many valid ones does it drop?",
+       {},
+       &measureValidity},
       {"growth",
        "How do frame time and memory grow with the scene, the cache, the picture and the tracers?",
        {},

@@ -11,6 +11,8 @@ namespace {
 
 /// A point of the depth buffer that faces away is shaded as if seen this far above its horizon (a cosine).
 constexpr float kGrazing = 0.01f;
+/// Around a sample's point, of its distance, in which a ray to it must find its surface again.
+constexpr float kRevisitReach = 1e-3f;
 /// Pixels whose primary rays go one after another before any of them is shaded.
 constexpr std::size_t kTogether = 16;
 
@@ -91,7 +93,7 @@ core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, int x, in
   if (!primary.found) {
     const Vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     sample.position = frame.view.unproject(center, windowDepth);
-    sample.normal = -direction;
+    sample.normal = sample.toEye = -direction;
     sample.cosView = 1;
     sample.viewDepth = frame.view.viewDepth(windowDepth);
     return sample;
@@ -100,16 +102,11 @@ core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, int x, in
   const Bsdf bsdf(surface, -direction);
   sample.position = surface.position;
   sample.normal = surface.ns;
+  sample.toEye = glm::normalize(frame.view.camera().eye - sample.position);
   sample.cosView = std::clamp(glm::dot(surface.ns, -direction), 0.0f, 1.0f);
   sample.viewDepth = sample.fromDepth ? frame.view.viewDepth(windowDepth) : primary.hit.t;
 
-  Vec3 sum = correction(surface, bsdf, direction, x, y, counters);
-  if (world_.attenuates() && !surface.front && surface.closed) {
-    // The camera is inside this solid, which tints what the base layer shows too.
-    const float distance = glm::length(surface.position - frame.view.camera().eye);
-    const Vec3 left = Inside().transmittance(world_, surface.object, false, distance);
-    sum = left * sum - (Vec3(1) - left) * shown(surface);
-  }
+  const Vec3 sum = difference(surface, bsdf, frame.view.camera().eye, direction, x, y, counters);
   if (finite(sum)) {
     sample.correction = sum;
   } else {
@@ -118,12 +115,41 @@ core::Sample CorrectiveTracer::shade(const core::FrameSnapshot& frame, int x, in
   return sample;
 }
 
+std::optional<CorrectiveTracer::Revisit> CorrectiveTracer::revisit(const core::Sample& sample,
+                                                                   const Vec3& eye,
+                                                                   RayCounters& counters) const {
+  const Vec3 toPoint = sample.position - eye;
+  const float distance = glm::length(toPoint);
+  if (!(distance > 0) || !(glm::dot(sample.normal, toPoint) < 0)) return {};
+  const Vec3 direction = toPoint / distance;
+  // Only the neighbourhood of the point: other parts of the object may stand in the way.
+  const float reach = kRevisitReach * distance;
+  Hit hit;
+  if (!world_.intersectVisible(world_.objectOfId(sample.id),
+                               {eye, direction, distance - reach, distance + reach}, hit, counters))
+    return {};
+  const Surface surface = makeSurface(world_, hit, direction);
+  const Bsdf bsdf(surface, -direction);
+  const Vec3 sum = difference(surface, bsdf, eye, direction, sample.x, sample.y, counters);
+  if (!finite(sum)) return {};
+  return Revisit{sum, shown(surface)};
+}
+
+Vec3 CorrectiveTracer::difference(const Surface& surface, const Bsdf& bsdf, const Vec3& eye,
+                                  const Vec3& direction, int x, int y, RayCounters& counters) const {
+  const Vec3 sum = correction(surface, bsdf, direction, x, y, counters);
+  if (!world_.attenuates() || surface.front || !surface.closed) return sum;
+  // The camera is inside this solid, which tints what the base layer shows too.
+  const Vec3 left =
+      Inside().transmittance(world_, surface.object, false, glm::length(surface.position - eye));
+  return left * sum - (Vec3(1) - left) * shown(surface);
+}
+
 Vec3 CorrectiveTracer::shown(const Surface& surface) const {
   if (!surface.scatters()) return Vec3(0);
   const Vec3 reflected = surface.material->unlit
                              ? surface.point.baseColor
-                             : baseAlbedo(surface.point) * (1 / core::kPi) *
-                                   mapIrradiance(world_, surface);
+                             : baseAlbedo(surface.point) * (1 / core::kPi) * mapIrradiance(world_, surface);
   return (surface.emitted() + reflected) * surface.point.coverage;
 }
 

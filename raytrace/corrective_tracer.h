@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,16 @@ class CorrectiveTracer {
   void trace(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels, int level,
              RayCounters& counters, std::vector<core::Sample>& samples) const;
 
+  /// A sample's surface point as another eye sees it.
+  struct Revisit {
+    Vec3 correction{0};  ///< with the random numbers of the sample's pixel
+    Vec3 shown{0};       ///< radiance of the base layer
+  };
+  /// What the correction of a sample of this tracer would be if its own point, not its pixel's, were traced
+  /// for another eye: the truth that aging must foretell. Nothing where the point faces away from the eye, or
+  /// where the ray does not find it again. Any thread.
+  std::optional<Revisit> revisit(const core::Sample& sample, const Vec3& eye, RayCounters& counters) const;
+
   const World& world() const { return world_; }
   const CorrectiveOptions& options() const { return options_; }
 
@@ -55,6 +66,9 @@ class CorrectiveTracer {
   Primary aim(const core::FrameSnapshot& frame, int x, int y, RayCounters& counters) const;
   /// What the base layer shows of a point.
   Vec3 shown(const Surface& surface) const;
+  /// Full radiance - base, seen along `direction` from the eye; not yet checked for being finite.
+  Vec3 difference(const Surface& surface, const Bsdf& bsdf, const Vec3& eye, const Vec3& direction, int x,
+                  int y, RayCounters& counters) const;
   Vec3 correction(const Surface& surface, const Bsdf& bsdf, const Vec3& direction, int x, int y,
                   RayCounters& counters) const;
 

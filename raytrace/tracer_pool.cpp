@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "core/corrective/change_rate.h"
+
 namespace saccade::raytrace {
 namespace {
 
@@ -58,6 +60,7 @@ core::SampleBatch TracerPool::trace(const core::Job& job, std::uint8_t thread) {
     if (waiting == pixels.size()) traceWaiting();
   });
   traceWaiting();
+  core::estimateChangeRates(batch.samples);
   for (core::Sample& s : batch.samples) s.thread = thread;
   samples_.fetch_add(batch.samples.size(), std::memory_order_relaxed);
   rays_.fetch_add(counters.rays, std::memory_order_relaxed);

@@ -124,7 +124,8 @@ void addRunOptions(CLI::App& command, RunOptions& o) {
 }
 
 const std::map<std::string, AgingTest>& agingTests() {
-  static const std::map<std::string, AgingTest> kTests{{"haber", AgingTest::haber}};
+  static const std::map<std::string, AgingTest> kTests{{"haber", AgingTest::haber},
+                                                       {"change", AgingTest::change}};
   return kTests;
 }
 
@@ -148,11 +149,16 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->option_text("NAME [attention]")
       ->group(group);
   command
-      .add_option("--aging", o.aging, "Test that cached samples must pass: haber, the paper's section 4.5")
+      .add_option("--aging", o.aging,
+                  "Test that cached samples must pass: haber (the paper's section 4.5: change of <normal, "
+                  "view direction>) or change (expected change of what is displayed, sample by sample)")
       ->transform(CLI::CheckedTransformer(agingTests()))
       ->option_text("NAME [haber]")
       ->group(group);
-  command.add_option("--delta", o.delta, "Aging: tolerated change of <normal, view direction>")
+  command
+      .add_option(
+          "--delta", o.delta,
+          "Aging: tolerated change; of <normal, view direction> for haber, as displayed (0 to 1) for change")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str()
       ->group(group);

@@ -12,6 +12,7 @@
 #include "core/scene/load.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
+#include "render/splat/aging.h"
 
 namespace CLI {
 class App;
@@ -42,10 +43,7 @@ struct RunOptions {
   std::string statsFile;
 };
 
-/// What cached samples must pass to be shown again.
-enum class AgingTest {
-  haber  ///< the paper's section 4.5
-};
+using render::AgingTest;
 
 /// By their names on the command line and in recorded sessions.
 const std::map<std::string, AgingTest>& agingTests();

@@ -44,6 +44,8 @@ void forEachNumber(SampleT& s, Visit&& visit) {
   visit(s.position.x), visit(s.position.y), visit(s.position.z);
   visit(s.normal.x), visit(s.normal.y), visit(s.normal.z);
   visit(s.cosView), visit(s.viewDepth);
+  visit(s.toEye.x), visit(s.toEye.y), visit(s.toEye.z);
+  visit(s.changeRate);
 }
 
 template <class T>

@@ -20,7 +20,7 @@ extern const char* const kSessionTables;  ///< CREATE TABLE statements
 
 /// Bytes of a sample as this version writes it. A sample grows only at its end: what an older file lacks is
 /// 0.
-inline constexpr std::size_t kSampleBytes = 56;
+inline constexpr std::size_t kSampleBytes = 72;
 inline constexpr std::size_t kSmallestSampleBytes = 56;  ///< of any version
 
 /// Samples one after another, little-endian, kSampleBytes each.

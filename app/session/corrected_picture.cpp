@@ -33,7 +33,8 @@ void CorrectedPicture::begin(const core::Camera& camera, ImageSize size) {
 
 void CorrectedPicture::age(const core::View& view) {
   const StageTimer timer(stats_, "age");
-  stats_.samplesDropped += cache_.age(view, {settings_.nMin, settings_.delta, settings_.maxAge}).deleted;
+  stats_.samplesDropped +=
+      cache_.age(view, {settings_.nMin, settings_.delta, settings_.maxAge, settings_.aging}).deleted;
 }
 
 void CorrectedPicture::draw(const core::View& view) {

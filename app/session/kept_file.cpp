@@ -106,6 +106,8 @@ void sampleFields(Field&& field, Sample& s) {
   for (auto* v : {&s.correction, &s.position, &s.normal}) vectorField(field, *v);
   field(s.cosView);
   field(s.viewDepth);
+  vectorField(field, s.toEye);
+  field(s.changeRate);
 }
 
 template <class Out>
@@ -150,7 +152,8 @@ std::size_t otherBytes(std::size_t ages) {
 
 bool plausible(const core::Sample& s, std::uint32_t idCount) {
   bool finite = std::isfinite(s.cosView) && std::isfinite(s.viewDepth);
-  for (const auto* v : {&s.correction, &s.position, &s.normal}) {
+  finite = finite && std::isfinite(s.changeRate);
+  for (const auto* v : {&s.correction, &s.position, &s.normal, &s.toEye}) {
     for (int c = 0; c < 3; ++c) finite = finite && std::isfinite((*v)[c]);
   }
   return finite && s.id >= 1 && s.id <= idCount && s.level >= 1 && s.level <= core::Lattice::kMaxLevel;

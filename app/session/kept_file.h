@@ -7,7 +7,8 @@
 //   u64 number of ages u64 per age, oldest first, the camera's own last: age u64, pixels a radian f32,
 //   samples u64, and each of them:
 //     x u16, y u16, id u32, level u8, thread u8, from depth u8 (0 or 1), 0 u8,
-//     correction 3 f32, position 3 f32, normal 3 f32, <n, v> f32, view depth f32
+//     correction 3 f32, position 3 f32, normal 3 f32, <n, v> f32, view depth f32,
+//     direction to the eye 3 f32, rate of change f32
 //   hash u64 of all before it (core::ContentHash, in pieces of 1 MiB)
 #pragma once
 
@@ -22,7 +23,7 @@
 namespace saccade::app {
 
 /// To be raised with every change of the file or of what its numbers mean.
-inline constexpr std::uint32_t kKeptVersion = 1;
+inline constexpr std::uint32_t kKeptVersion = 2;
 
 /// Hashes of what a sample depends on beside its frame.
 struct SampleOrigin {

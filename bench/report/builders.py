@@ -265,6 +265,27 @@ def _kind_panels(records: Sequence[Record], names: Sequence[str], kind: str, x_l
     return panels
 
 
+def error_against_share(
+    context: Context, metrics: Sequence[str], share: str, x_label: str, group: str
+) -> list[Block]:
+    """For each value of the label `group` a figure: errors by another measured share, a curve for each variant."""
+
+    def place(record: Record) -> tuple[float, None] | None:
+        return (record.values[share].median, None) if share in record.values else None
+
+    found: list[Block] = []
+    for value, records in by_label(context.records, group).items():
+        points = [record for record in records if record.at and share in record.values]
+        names = [name for name in varying(points) if name not in (group, *points[0].at)] if points else []
+        panels = [
+            Panel(hint(points, [metric]), x_label, axis_label(metric), curves(points, names, metric, place), [], False, False)
+            for metric in metrics
+            if any(metric in record.values for record in points)
+        ]
+        found += _plot(context, _stem(records[0].experiment, value), value, panels)
+    return found + plain(context)
+
+
 _HARD_LABELS = ("number", "title", "case", "test")
 _ARROWS = {"lower": " ↓", "higher": " ↑"}
 

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Callable
 
 from blocks import Block, Context
-from builders import error_against_cost, growth, hard_cases, plain, ratio_rows
+from builders import error_against_cost, error_against_share, growth, hard_cases, plain, ratio_rows
 
 Builder = Callable[[Context], list[Block]]
 
@@ -52,6 +52,17 @@ SECTIONS: dict[str, Section] = {
             metrics=_MOVING,
             x_label="budget of a frame, or its time without one (ms)",
             timing=_TIMES,
+        ),
+    ),
+    "validity": Section(
+        "Validity of cached samples",
+        "How valid are the cached samples that aging keeps, and how many valid ones does it drop?",
+        partial(
+            error_against_share,
+            metrics=("error", "precision", "walk_flip"),
+            share="reuse",
+            x_label="share of cached samples kept",
+            group="kind",
         ),
     ),
     "maps": Section(

@@ -62,6 +62,10 @@ struct Sample {
   Vec3 normal{0};             ///< shading normal, unit
   float cosView = 0;          ///< <normal, v>, v = unit vector from position to eye
   float viewDepth = 0;        ///< metres along the line of sight
+  Vec3 toEye{0};              ///< unit vector from position to the eye it was traced for
+  /// Expected change of the correction, as displayed (0 to 1), for each radian by which the direction to the
+  /// eye turns; core/corrective/change_rate.h.
+  float changeRate = 0;
 };
 
 struct SampleBatch {

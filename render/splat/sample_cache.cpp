@@ -75,6 +75,8 @@ void SampleCache::Page::set(int i, const core::Sample& s) {
   nx[i] = s.normal.x, ny[i] = s.normal.y, nz[i] = s.normal.z;
   cosView[i] = s.cosView;
   viewDepth[i] = s.viewDepth;
+  vx[i] = s.toEye.x, vy[i] = s.toEye.y, vz[i] = s.toEye.z;
+  changeRate[i] = s.changeRate;
   id[i] = s.id;
   correction[i] = s.correction;
   x[i] = static_cast<std::uint16_t>(s.x);
@@ -96,6 +98,8 @@ core::Sample SampleCache::Page::get(int i) const {
   s.normal = {nx[i], ny[i], nz[i]};
   s.cosView = cosView[i];
   s.viewDepth = viewDepth[i];
+  s.toEye = {vx[i], vy[i], vz[i]};
+  s.changeRate = changeRate[i];
   return s;
 }
 
@@ -220,8 +224,11 @@ SampleCache::AgingResult SampleCache::age(const core::View& view, const AgingOpt
   const std::vector<std::uint8_t> tested = testedLevels(options.nMin);
   const auto maxAge = static_cast<std::uint64_t>(options.maxAge);
   if (cameraAge_ > maxAge) dropGenerations(cameraAge_ - maxAge);
+  const core::Vec3& eye = view.camera().eye;
   for (Generation& g : generations_) {
-    if (invalidate(g, view.camera().eye, options.delta, tested) > 0) compact(g);
+    const std::size_t dead = options.test == AgingTest::haber ? invalidate(g, eye, options.delta, tested)
+                                                              : removeChanged(g, eye, options.delta);
+    if (dead > 0) compact(g);
   }
   return {size_, before - size_};
 }
@@ -244,6 +251,28 @@ std::vector<std::uint8_t> SampleCache::testedLevels(int nMin) const {
     }
   }
   return tested;
+}
+
+/// Marks as dead the samples that are expected to have changed by more than delta; their number.
+std::size_t SampleCache::removeChanged(Generation& g, const core::Vec3& eye, float delta) {
+  std::size_t dead = 0;
+  for (const PagePtr& page : g.pages) {
+    Page& p = *page;
+    alignas(32) float squared[Page::kCapacity];  // of the expected change
+    for (int i = 0; i < p.count; ++i) {
+      const float x = eye.x - p.px[i], y = eye.y - p.py[i], z = eye.z - p.pz[i];
+      const float scale = 1 / std::sqrt(x * x + y * y + z * z);
+      const float dx = x * scale - p.vx[i], dy = y * scale - p.vy[i], dz = z * scale - p.vz[i];
+      squared[i] = p.changeRate[i] * p.changeRate[i] * (dx * dx + dy * dy + dz * dz);
+    }
+    for (int i = 0; i < p.count; ++i) {
+      if (squared[i] <= delta * delta) continue;  // an eye on the sample gives NaN: invalid
+      forget(p, i);
+      p.level[i] = 0;
+      ++dead;
+    }
+  }
+  return dead;
 }
 
 /// Marks as dead the samples of those objects that fail the test in this generation; their number.

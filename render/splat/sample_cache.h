@@ -27,19 +27,14 @@
 #include <vector>
 
 #include "core/corrective/messages.h"
+#include "render/splat/aging.h"
 #include "render/splat/correction_layer.h"
 
 namespace saccade::render {
 
-struct AgingOptions {
-  int nMin = 10;       ///< N_min: samples a level needs to be the one that is tested
-  float delta = 0.1f;  ///< largest change of <normal, v> of a valid sample, [0, 1]
-  int maxAge = 30;     ///< MAX_AGE in camera changes, >= 0
-};
-
 class SampleCache {
  public:
-  /// Keeps at most `maxBytes` of samples; less than one page (15 KiB) keeps nothing.
+  /// Keeps at most `maxBytes` of samples; less than one page (19 KiB) keeps nothing.
   explicit SampleCache(std::size_t maxBytes);
 
   struct AgingResult {
@@ -67,7 +62,10 @@ class SampleCache {
 
   /// Step 2 of the loop: to be called once for every new camera, the first included. Raises the camera age,
   /// then the paper's pseudo code. Two additions where the paper says nothing: v is normalised (fact 15), and
-  /// all samples of an object none of whose levels has N_min of them are tested together.
+  /// all samples of an object none of whose levels has N_min of them are tested together. Or, in place of the
+  /// paper's test, AgingTest::change: a sample leaves whose changeRate times the angle (its chord) by which
+  /// the direction to the eye has turned since it was traced exceeds delta. Either leaves the same samples in
+  /// whatever order they came.
   AgingResult age(const core::View& view, const AgingOptions& options);
 
   /// Step 5: projects all samples into the frame and splats the visible ones as placeholders; those traced
@@ -116,6 +114,8 @@ class SampleCache {
     float nx[kCapacity], ny[kCapacity], nz[kCapacity];
     float cosView[kCapacity];
     float viewDepth[kCapacity];
+    float vx[kCapacity], vy[kCapacity], vz[kCapacity];  ///< toEye
+    float changeRate[kCapacity];
     std::uint32_t id[kCapacity];
     core::Vec3 correction[kCapacity];
     std::uint16_t x[kCapacity], y[kCapacity];
@@ -165,6 +165,7 @@ class SampleCache {
   void forget(const Page& page, int slot) { --counts_[page.id[slot]][page.level[slot]], --size_; }
   void dropGenerations(std::uint64_t olderThan);
   std::vector<std::uint8_t> testedLevels(int nMin) const;
+  std::size_t removeChanged(Generation& g, const core::Vec3& eye, float delta);
   std::size_t invalidate(Generation& g, const core::Vec3& eye, float delta,
                          const std::vector<std::uint8_t>& tested);
   void compact(Generation& g);

@@ -145,11 +145,13 @@ TEST_F(LoopTest, SampleBudgetsOfSeveralFramesAddUpToConvergence) {
   EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
 }
 
-class Walk : public LoopTest, public testing::WithParamInterface<int> {};
+class Walk : public LoopTest, public testing::WithParamInterface<std::tuple<int, app::AgingTest>> {};
 
 TEST_P(Walk, OfSixtyFramesThenRestEqualsRayTraced) {
   const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
-  FrameLoop loop(workspace_, *gl_.renderer, {.threads = GetParam(), .asynchronousAnalysis = GetParam() > 0});
+  const auto [threads, aging] = GetParam();
+  FrameLoop loop(workspace_, *gl_.renderer,
+                 {.corrective = {.aging = aging}, .threads = threads, .asynchronousAnalysis = threads > 0});
   for (int i = 59; i >= 0; --i) {
     loop.step(path.at(i / 25.0), size_, FrameBudget::untilDeadline(std::chrono::milliseconds(5)));
   }
@@ -161,12 +163,36 @@ TEST_P(Walk, OfSixtyFramesThenRestEqualsRayTraced) {
   EXPECT_EQ(loop.stats().samplesTraced - tracedWhileWalking, loop.frame().nonDiffusePixels - exactBefore);
   EXPECT_EQ(tests::largestDifference(loop.linear(), tests::rayTraced(workspace_, loop.frame())), 0);
 }
-INSTANTIATE_TEST_SUITE_P(Threads, Walk, testing::Values(0, 1, 2, 8));
+INSTANTIATE_TEST_SUITE_P(Threads, Walk,
+                         testing::Combine(testing::Values(0, 1, 2, 8),
+                                          testing::Values(app::AgingTest::haber, app::AgingTest::change)));
+
+TEST_F(LoopTest, AWalkOfSampleBudgetsIsTheSameOnAnyNumberOfThreads) {
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  for (const app::AgingTest aging : {app::AgingTest::haber, app::AgingTest::change}) {
+    std::vector<core::ImageRgb> expected;
+    for (const int threads : {0, 2}) {
+      FrameLoop loop(workspace_, *gl_.renderer,
+                     {.corrective = {.aging = aging, .delta = 0.05f}, .threads = threads});
+      for (std::size_t i = 0; i < 6; ++i) {
+        loop.step(path.at(static_cast<double>(i) / 5), size_, FrameBudget::firstSamples(600));
+        if (threads == 0) {
+          expected.push_back(loop.linear());
+        } else {
+          EXPECT_EQ(tests::largestDifference(loop.linear(), expected[i]), 0) << "frame " << i;
+        }
+      }
+      EXPECT_GT(loop.stats().samplesDropped, 0u);
+    }
+  }
+}
 
 TEST_P(Walk, OfAFullCacheThenRestEqualsRayTraced) {
   const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
-  FrameLoopOptions options{.threads = GetParam(), .asynchronousAnalysis = GetParam() > 0};
-  options.corrective.cacheMb = 1;  // some 17,000 samples
+  const auto [threads, aging] = GetParam();
+  FrameLoopOptions options{
+      .corrective = {.aging = aging}, .threads = threads, .asynchronousAnalysis = threads > 0};
+  options.corrective.cacheMb = 1;  // some 14,600 samples
   FrameLoop loop(workspace_, *gl_.renderer, options);
   for (int i = 1; i <= 8; ++i) loop.step(path.at(i / 25.0), {640, 480}, FrameBudget::firstSamples(6000));
   const std::size_t bound = std::size_t{1} << 20;
@@ -215,7 +241,7 @@ TEST_F(LoopTest, AFullCacheKeepsWhatWasHandedOutFirstOfTheOldestAge) {
 }
 
 TEST_P(Walk, BudgetsOfAllKindsMayFollowEachOther) {
-  FrameLoop loop(workspace_, *gl_.renderer, {.threads = GetParam()});
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = std::get<0>(GetParam())});
   loop.step(camera_, size_, FrameBudget::firstSamples(333));
   loop.step(camera_, size_, FrameBudget::untilDeadline(std::chrono::milliseconds(2)));
   const std::uint64_t traced = loop.stats().samplesTraced;

@@ -23,7 +23,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kPlenty = std::size_t{16} << 20;
 constexpr std::uint32_t kIds = 9;
-constexpr std::size_t kSampleBytes = 56, kAgeBytes = 20;
+constexpr std::size_t kSampleBytes = 72, kAgeBytes = 20;
 constexpr std::size_t kHead = 16 + 40 + 40 + 8 + 16;  ///< up to the number of ages
 constexpr std::size_t kFirstSample = kHead + 8 + kAgeBytes;
 
@@ -39,6 +39,7 @@ core::Sample sampleOf(std::mt19937& random) {
   s.fromDepth = random() % 2 == 0;
   s.correction = vector(), s.position = vector(), s.normal = vector();
   s.cosView = u(random), s.viewDepth = 5 + u(random);
+  s.toEye = vector(), s.changeRate = u(random);
   return s;
 }
 
@@ -123,7 +124,8 @@ TEST_F(KeptFileTest, RoundTrip) {
     });
     c.forEach([&](const core::Sample& s, std::uint64_t age) {
       add(s.x), add(s.y), add(s.id), add(s.level), add(s.thread), add(s.fromDepth), add(s.correction);
-      add(s.position), add(s.normal), add(s.cosView), add(s.viewDepth), add(age);
+      add(s.position), add(s.normal), add(s.cosView), add(s.viewDepth), add(s.toEye), add(s.changeRate),
+          add(age);
     });
     return all;
   };

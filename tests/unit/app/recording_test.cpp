@@ -134,10 +134,11 @@ TEST(SessionFormat, ASampleLiesAsDocumented) {
   core::Sample s;
   s.x = 0x0102, s.y = 0x0304, s.id = 0x05060708, s.level = 7, s.thread = 3, s.fromDepth = true;
   s.correction = {1, 2, 3}, s.position = {4, 5, 6}, s.normal = {7, 8, 9}, s.cosView = 10, s.viewDepth = 11;
+  s.toEye = {12, 13, 14}, s.changeRate = 15;
   const std::vector<std::uint8_t> bytes = app::encodeSamples(std::span(&s, 1));
   const std::vector<std::uint8_t> head{2, 1, 4, 3, 8, 7, 6, 5, 7, 3, 1, 0};
   EXPECT_TRUE(std::equal(head.begin(), head.end(), bytes.begin()));
-  for (int i = 0; i < 11; ++i) {
+  for (int i = 0; i < 15; ++i) {
     float value = 0;
     std::memcpy(&value, bytes.data() + 12 + 4 * i, 4);
     EXPECT_EQ(value, static_cast<float>(i + 1));

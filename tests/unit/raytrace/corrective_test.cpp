@@ -190,6 +190,57 @@ TEST(CorrectiveTracer, PixelsTracedTogetherHaveTheBitsTheyHaveAlone) {
   EXPECT_NE(pixels.size() % 16, 0u);  // the last group is not full
 }
 
+TEST(CorrectiveTracer, APointSeenAgainShowsWhatItsMirrorShowsThen) {
+  // Lamps of radiance 2 and 5 in turn, 0.5 m wide each, stand behind the mirror's reflected rays.
+  SceneMaker m;
+  m.quad(m.material(tests::metalMaterial(Vec3(1), 0)), 1, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+  for (int i = 0; i < 8; ++i) {
+    const auto radiance = i % 2 ? 5.0f : 2.0f;
+    m.quad(m.material(tests::diffuseMaterial(Vec3(0), Vec3(radiance))), 0,
+           {2, 0.5f * static_cast<float>(i), -1}, {0, 0, 2}, {0, 0.5f, 0});
+  }
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const auto frame = frameOf(world, cameraAt({-2, 2.25f, 0}, {0, 0, 0}), 33, 33);
+  RayCounters counters;
+  const core::Sample s = tracer.trace(*frame, 16, 16, 7, counters);
+  EXPECT_NEAR(s.correction.x, 2, 1e-4);  // reflected to (2, 2.25): the fifth lamp
+  EXPECT_LT(glm::length(s.toEye - glm::normalize(Vec3(-2, 2.25f, 0))), 1e-5f);
+  for (const float height : {0.25f, 0.75f, 1.3f, 2.25f, 2.75f, 3.2f}) {
+    const auto seen = tracer.revisit(s, {-2, height, 0}, counters);
+    ASSERT_TRUE(seen);
+    EXPECT_NEAR(seen->correction.x, static_cast<int>(2 * height) % 2 ? 5 : 2, 1e-4) << height;
+    EXPECT_EQ(seen->shown, Vec3(0));
+  }
+  EXPECT_FALSE(tracer.revisit(s, {-2, -1, 0}, counters));  // from below
+  EXPECT_FALSE(tracer.revisit(s, s.position, counters));
+}
+
+TEST(CorrectiveTracer, RepeatsASampleForTheEyeThatItWasTracedFor) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  const Vec3 eye(0, 0, 2.9f);
+  const auto frame = frameOf(world, cameraAt(eye, Vec3(0)), 40, 40);
+  RayCounters counters;
+  int samples = 0, found = 0, near = 0;
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      if (frame->idAt(x, y) == 0) continue;
+      const core::Sample s = tracer.trace(*frame, x, y, 7, counters);
+      if (s.fromDepth) continue;
+      ++samples;
+      const auto seen = tracer.revisit(s, eye, counters);
+      found += seen.has_value();
+      near += seen && glm::length(seen->correction - s.correction) <= 0.01f * (1 + glm::length(s.correction));
+    }
+  }
+  // The ray to the point is not the pixel's bit for bit: edges of what is reflected may fall to either side.
+  EXPECT_GT(samples, 100);
+  EXPECT_GE(found, samples * 98 / 100);
+  EXPECT_GE(near, samples * 95 / 100);
+}
+
 TEST(RayLog, HoldsEveryRayAndReplaysTheirHits) {
   const SceneMaker m = room();
   const World world(m.scene, planOf());
