@@ -15,8 +15,8 @@ constexpr std::size_t kPollPixels = 16;
 }  // namespace
 
 TracerPool::TracerPool(const CorrectiveTracer& tracer, core::RegionQueue& regions, core::SampleQueue& samples,
-                       int threads)
-    : tracer_(tracer), regions_(regions), sampleQueue_(samples) {
+                       int threads, bool changeRates)
+    : tracer_(tracer), regions_(regions), sampleQueue_(samples), changeRates_(changeRates) {
   workers_.reserve(threads > 0 ? threads : 0);
   try {
     for (int i = 0; i < threads; ++i) {
@@ -60,7 +60,7 @@ core::SampleBatch TracerPool::trace(const core::Job& job, std::uint8_t thread) {
     if (waiting == pixels.size()) traceWaiting();
   });
   traceWaiting();
-  core::estimateChangeRates(batch.samples);
+  if (changeRates_) core::estimateChangeRates(batch.samples);
   for (core::Sample& s : batch.samples) s.thread = thread;
   samples_.fetch_add(batch.samples.size(), std::memory_order_relaxed);
   rays_.fetch_add(counters.rays, std::memory_order_relaxed);

@@ -16,9 +16,10 @@ namespace saccade::raytrace {
 
 class TracerPool {
  public:
-  /// Starts `threads` workers; 0 = none, use runOne(). Queues and tracer must outlive the pool.
+  /// Starts `threads` workers; 0 = none, use runOne(). `changeRates`: samples' are estimated, which only one
+  /// of the aging tests reads. Queues and tracer must outlive the pool.
   TracerPool(const CorrectiveTracer& tracer, core::RegionQueue& regions, core::SampleQueue& samples,
-             int threads);
+             int threads, bool changeRates = false);
   /// Closes both queues and joins; a full sample queue does not hold it up.
   ~TracerPool();
   TracerPool(const TracerPool&) = delete;
@@ -44,6 +45,7 @@ class TracerPool {
   const CorrectiveTracer& tracer_;
   core::RegionQueue& regions_;
   core::SampleQueue& sampleQueue_;
+  const bool changeRates_;
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> samples_{0}, rays_{0}, nonFinite_{0};
   std::mutex failureMutex_;

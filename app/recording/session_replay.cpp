@@ -10,8 +10,6 @@ namespace saccade::app {
 
 namespace {
 
-bool finite(const core::Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 bool validCamera(const RecordedFrame& frame, const core::Bounds& bounds) {
   try {
     core::View(frame.camera, frame.size.width, frame.size.height, bounds);
@@ -85,11 +83,9 @@ void SessionReplay::dropImpossible(core::SampleBatch& batch, const RecordedFrame
   const std::uint32_t ids = scene_.idCount();
   const bool current = batch.epoch == frame.epoch;
   const auto impossible = [&](const core::Sample& s) {
-    const bool numbers = finite(s.correction) && finite(s.position) && finite(s.normal) &&
-                         std::isfinite(s.cosView) && std::isfinite(s.viewDepth);
     const bool known = s.id >= 1 && s.id <= ids && s.level >= 1 && s.level <= core::Lattice::kMaxLevel;
     const bool inside = !current || (s.x < frame.size.width && s.y < frame.size.height);
-    return !numbers || !known || !inside;
+    return !core::isFinite(s) || !known || !inside;
   };
   droppedSamples_ += std::erase_if(batch.samples, impossible);
 }

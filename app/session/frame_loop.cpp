@@ -34,7 +34,7 @@ FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer,
               {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
       picture_(workspace.scene, renderer, settingsOf(options), stats_),
       analyzer_(seeded(options.corrective.attention, options.seed)),
-      pool_(tracer_, regions_, samples_, options.threads) {
+      pool_(tracer_, regions_, samples_, options.threads, options.corrective.aging == AgingTest::change) {
   stats_.seed = options.seed;
   stats_.threads = options.threads;
   if (options.asynchronousAnalysis) analyzer_.start(mailbox_, regions_);

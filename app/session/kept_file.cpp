@@ -151,12 +151,8 @@ std::size_t otherBytes(std::size_t ages) {
 }
 
 bool plausible(const core::Sample& s, std::uint32_t idCount) {
-  bool finite = std::isfinite(s.cosView) && std::isfinite(s.viewDepth);
-  finite = finite && std::isfinite(s.changeRate);
-  for (const auto* v : {&s.correction, &s.position, &s.normal, &s.toEye}) {
-    for (int c = 0; c < 3; ++c) finite = finite && std::isfinite((*v)[c]);
-  }
-  return finite && s.id >= 1 && s.id <= idCount && s.level >= 1 && s.level <= core::Lattice::kMaxLevel;
+  return core::isFinite(s) && s.id >= 1 && s.id <= idCount && s.level >= 1 &&
+         s.level <= core::Lattice::kMaxLevel;
 }
 
 core::ByteReader readerOf(Bytes bytes, const std::filesystem::path& file) {

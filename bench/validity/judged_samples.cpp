@@ -1,6 +1,7 @@
 #include "bench/validity/judged_samples.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,7 @@
 namespace saccade::bench {
 namespace {
 
+constexpr float kAnyChange = 1e6f;
 constexpr int kFrames = 30;  ///< as many as MAX_AGE lets live
 constexpr std::size_t kBytes = std::size_t{64} << 20;
 constexpr float kMirrorAlpha = 0.01f;
@@ -45,8 +47,9 @@ ObjectKind kindOf(const raytrace::World& world, std::uint32_t id) {
 JudgedPlace::JudgedPlace(const Stage& stage, const app::CameraPath& path, double seconds)
     : view_(stage.view(path.at(seconds), kValiditySize)) {
   app::FrameLoopOptions options{.threads = 0, .seed = stage.seed};
-  options.corrective.delta =
-      2;  // no two unit vectors' cosines differ by more: nothing ages but beyond MAX_AGE
+  // Nothing ages but beyond MAX_AGE.
+  options.corrective.aging = app::AgingTest::change;
+  options.corrective.delta = kAnyChange;
   app::FrameLoop loop(*stage.workspace, *stage.gl->renderer, options);
   std::map<std::uint64_t, core::Vec3> eyes;  // by camera age
   for (int i = kFrames; i >= 1; --i) {
@@ -77,13 +80,16 @@ JudgedPlace::JudgedPlace(const Stage& stage, const app::CameraPath& path, double
   });
 }
 
-std::unordered_set<std::uint64_t> JudgedPlace::kept(const render::AgingOptions& options) const {
+JudgedPlace::Aged JudgedPlace::aged(const render::AgingOptions& options) const {
+  using Clock = std::chrono::steady_clock;
   render::SampleCache cache(kBytes);
   cache_->thaw(view_, cache);
+  Aged aged;
+  const Clock::time_point start = Clock::now();
   cache.age(view_, options);
-  std::unordered_set<std::uint64_t> keys;
-  cache.forEach([&](const core::Sample& s, std::uint64_t age) { keys.insert(keyOf(s, age)); });
-  return keys;
+  aged.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  cache.forEach([&](const core::Sample& s, std::uint64_t age) { aged.kept.insert(keyOf(s, age)); });
+  return aged;
 }
 
 }  // namespace saccade::bench

@@ -40,8 +40,13 @@ class JudgedPlace {
 
   /// Of those whose surface faces the new eye and is met again.
   const std::vector<JudgedSample>& samples() const { return samples_; }
-  /// Keys of the samples that SampleCache::age keeps for the new view.
-  std::unordered_set<std::uint64_t> kept(const render::AgingOptions& options) const;
+  /// What SampleCache::age does for the new view.
+  struct Aged {
+    std::unordered_set<std::uint64_t> kept;  ///< keys
+    double seconds = 0;                      ///< that it took, for all of the cache's samples
+  };
+  Aged aged(const render::AgingOptions& options) const;
+  std::size_t cached() const { return cache_->size(); }
 
  private:
   core::View view_;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr float kDeltas[] = {0.01f, 0.02f, 0.05f, 0.1f, 0.2f, 0.4f};
 constexpr int kPlaces = 6;
+constexpr double kAgedSamples = 50'000;
 constexpr float kTolerance = 0.03f;  ///< 8 of 255
 constexpr const char* kScenes[] = {"gallery", "cornell", "table", "ward"};
 
@@ -50,6 +51,7 @@ struct Variant {
   float delta;
   Results results;
   KindErrors walk;
+  std::vector<double> agingMs;  ///< by place, for kAgedSamples
 };
 
 std::string textOf(float delta) {
@@ -61,9 +63,18 @@ std::string textOf(float delta) {
 std::string nameOf(app::AgingTest test) { return test == app::AgingTest::haber ? "haber" : "change"; }
 
 void judge(const JudgedPlace& place, Variant& variant) {
-  const auto kept = place.kept({.delta = variant.delta, .test = variant.test});
+  const JudgedPlace::Aged aged = place.aged({.delta = variant.delta, .test = variant.test});
   for (const JudgedSample& s : place.samples())
-    variant.results[static_cast<std::size_t>(s.kind)].count(s, kept.contains(s.key));
+    variant.results[static_cast<std::size_t>(s.kind)].count(s, aged.kept.contains(s.key));
+  variant.agingMs.push_back(1000 * aged.seconds * kAgedSamples / static_cast<double>(place.cached()));
+}
+
+Record costOf(const Variant& variant) {
+  Record record;
+  record.key = "validity/aging/" + nameOf(variant.test) + "@" + textOf(variant.delta);
+  record.labels = {{"aging", nameOf(variant.test)}, {"delta", textOf(variant.delta)}};
+  record.values = {{"aging", Value::milliseconds(variant.agingMs)}};
+  return record;
 }
 
 Record recordOf(const Variant& variant, ObjectKind kind) {
@@ -137,6 +148,7 @@ void measureValidity(Session& session) {
       walk.walk(variant.test, variant.delta, variant.walk);
     }
   }
+  for (const Variant& variant : variants) session.add(costOf(variant), nullptr);
   for (const ObjectKind kind : kObjectKinds) {
     auto& samples = all[static_cast<std::size_t>(kind)];
     std::sort(samples.begin(), samples.end(),

@@ -16,6 +16,8 @@ namespace saccade::core {
 
 /// Expected change, displayed, a radian, where nothing speaks for another.
 inline constexpr float kUsualChangeRate = 0.3f;
+/// Of a sample that was not estimated, or is alone.
+inline constexpr float kUnknownChangeRate = 2 * kUsualChangeRate;
 
 /// Fills Sample::changeRate of a job's samples: one object, one level, in lattice order. Any thread; takes
 /// some 50 ns a sample.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
@@ -84,6 +85,13 @@ void findStartLevels(FrameSnapshot& frame, int nMin) {
 }
 
 }  // namespace
+
+bool isFinite(const Sample& s) {
+  for (const Vec3* v : {&s.correction, &s.position, &s.normal, &s.toEye}) {
+    if (!std::isfinite(v->x) || !std::isfinite(v->y) || !std::isfinite(v->z)) return false;
+  }
+  return std::isfinite(s.cosView) && std::isfinite(s.viewDepth) && std::isfinite(s.changeRate);
+}
 
 void measureExtents(FrameSnapshot& frame, std::uint32_t idCount, int nMin) {
   frame.extents.assign(std::size_t{idCount} + 1, ObjectExtent{});

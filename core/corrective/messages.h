@@ -64,9 +64,12 @@ struct Sample {
   float viewDepth = 0;        ///< metres along the line of sight
   Vec3 toEye{0};              ///< unit vector from position to the eye it was traced for
   /// Expected change of the correction, as displayed (0 to 1), for each radian by which the direction to the
-  /// eye turns; core/corrective/change_rate.h.
+  /// eye turns; 0: not estimated. core/corrective/change_rate.h.
   float changeRate = 0;
 };
+
+/// None of its numbers is NaN or infinite.
+bool isFinite(const Sample& sample);
 
 struct SampleBatch {
   std::uint64_t epoch = 0;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/corrective/change_rate.h"
+
 namespace saccade::render {
 namespace {
 
@@ -14,8 +16,6 @@ constexpr int kMaxLevel = core::Lattice::kMaxLevel;
 /// Splats between the fetch of a tile and its use.
 constexpr std::size_t kAhead = 8;
 constexpr float kLargest = std::numeric_limits<float>::max();
-
-bool finite(const core::Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 float pixelsPerRadianOf(const core::View& view) {
   const float halfAngle = 0.5f * view.camera().fovYDegrees * core::kPi / 180;
@@ -76,7 +76,7 @@ void SampleCache::Page::set(int i, const core::Sample& s) {
   cosView[i] = s.cosView;
   viewDepth[i] = s.viewDepth;
   vx[i] = s.toEye.x, vy[i] = s.toEye.y, vz[i] = s.toEye.z;
-  changeRate[i] = s.changeRate;
+  changeRate[i] = s.changeRate > 0 ? s.changeRate : core::kUnknownChangeRate;
   id[i] = s.id;
   correction[i] = s.correction;
   x[i] = static_cast<std::uint16_t>(s.x);
@@ -122,7 +122,7 @@ std::size_t SampleCache::add(const core::SampleBatch& batch, std::uint64_t camer
   std::size_t stored = 0;
   for (const core::Sample& s : batch.samples) {
     assert(s.level >= 1 && s.level <= kMaxLevel);
-    if (!finite(s.position) || !finite(s.normal) || !finite(s.correction)) continue;
+    if (!core::isFinite(s)) continue;
     // Looked up anew for every sample: making room may remove generations.
     Generation* g = &generation(cameraAge);
     if (g->pages.empty() || g->pages.back()->count == Page::kCapacity) {

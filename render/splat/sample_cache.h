@@ -52,8 +52,8 @@ class SampleCache {
 
   /// Stores a batch traced for the camera of age `cameraAge` (<= cameraAge(); late batches are welcome). When
   /// the memory is used up the oldest samples leave, of one age those that arrived last; samples as old as
-  /// the oldest stored are then refused. Samples with a position, normal or correction that is not finite are
-  /// ignored. Returns how many were stored.
+  /// the oldest stored are then refused. Samples that are not finite (core::isFinite) are ignored. Returns
+  /// how many were stored.
   std::size_t add(const core::SampleBatch& batch, std::uint64_t cameraAge);
 
   /// Takes over samples of an earlier run: before the first age(), age by age, oldest first, with what

@@ -69,6 +69,22 @@ TEST(TracerPool, GivesWhatTheReferenceGivesOnAnyNumberOfThreads) {
   }
 }
 
+TEST(TracerPool, EstimatesChangeRatesWhereTheyAreRead) {
+  const SceneMaker m = room();
+  const World world(m.scene, planOf());
+  const CorrectiveTracer tracer(world, {});
+  for (const bool rates : {false, true}) {
+    core::RegionQueue regions(64);
+    core::SampleQueue samples;
+    regions.beginFrame(frameOf(world, cameraAt({0, 0, 2.9f}, Vec3(0)), 60, 50));
+    TracerPool pool(tracer, regions, samples, 0, rates);
+    ASSERT_TRUE(pool.runOne());
+    const auto batch = samples.tryPop();
+    ASSERT_TRUE(batch && !batch->samples.empty());
+    for (const core::Sample& s : batch->samples) EXPECT_EQ(s.changeRate > 0, rates);
+  }
+}
+
 TEST(TracerPool, ClosesWithAFullQueueAndWithAnEmptyOne) {
   const SceneMaker m = room();
   const World world(m.scene, planOf());

@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "core/corrective/change_rate.h"
 #include "render/splat/sample_cache.h"
 #include "tests/unit/render/splat_fixture.h"
 
@@ -119,10 +120,24 @@ TEST(SampleCacheChange, TheOrderOfSamplesDoesNotMatter) {
   EXPECT_EQ(keptOf(samples, from, to, 0.1f), kept);
 }
 
-TEST(SampleCacheChange, AnEyeOnTheSampleAndARateThatIsNoNumberInvalidate) {
+TEST(SampleCacheChange, AnEyeOnTheSampleInvalidates) {
   const Vec3 from(0, 3, 0);
   EXPECT_TRUE(keptOf({sample(Vec3(1), from, 0.5f)}, from, Vec3(1), 2).empty());
-  EXPECT_TRUE(keptOf({sample(Vec3(0), from, std::nanf(""))}, from, from, 2).empty());
+}
+
+TEST(SampleCacheChange, ARateThatIsNoNumberIsNotStored) {
+  const Vec3 from(0, 3, 0);
+  SampleCache cache(kPlenty);
+  cache.age(viewFrom(from), change(0.1f));
+  EXPECT_EQ(cache.add({0, 0, {sample(Vec3(0), from, std::nanf(""))}}, cache.cameraAge()), 0u);
+}
+
+/// As in walks that are aged by the paper's test.
+TEST(SampleCacheChange, ARateThatWasNotEstimatedIsTakenForTheUsualOne) {
+  const Vec3 from(0, 3, 0), to(3 * std::sin(0.1f), 3 * std::cos(0.1f), 0);
+  const float expected = core::kUnknownChangeRate * 2 * std::sin(0.05f);
+  EXPECT_EQ(keptOf({sample(Vec3(0), from, 0)}, from, to, 1.01f * expected).size(), 1u);
+  EXPECT_EQ(keptOf({sample(Vec3(0), from, 0)}, from, to, 0.99f * expected).size(), 0u);
 }
 
 TEST(SampleCacheChange, LeavesAfterMaxAge) {
