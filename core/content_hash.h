@@ -39,6 +39,14 @@ class ContentHash {
     add(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
   }
 
+  /// The bytes of numbers or of plain structures without padding, one after another.
+  template <class Array>
+  void addArray(const Array& values) {
+    using T = std::remove_cvref_t<decltype(*values.data())>;
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)));
+  }
+
   std::uint64_t value() const { return mix(state_); }
 
  private:

@@ -60,6 +60,22 @@ void placeCharts(Scene& scene, const SceneCharts& charts) {
     scene.objects[o].lightmapScaleOffset = charts.places[o];
 }
 
+std::uint64_t contentHash(const IlluminationMaps& maps) {
+  ContentHash hash;
+  for (const int number : {maps.width, maps.height, maps.layers, maps.detail.height}) hash.add(number);
+  hash.addArray(maps.texels);
+  hash.addArray(maps.detail.blocks);
+  hash.addArray(maps.detail.texels);
+  hash.addArray(maps.charts.places);
+  for (const MeshCharts& mesh : maps.charts.meshes) {
+    hash.add(mesh.perVertex);
+    hash.addArray(mesh.sourceVertex);
+    hash.addArray(mesh.uv);
+    hash.addArray(mesh.indices);
+  }
+  return hash.value();
+}
+
 std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings) {
   ContentHash hash;
   hash.add(key);

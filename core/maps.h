@@ -60,6 +60,9 @@ void placeCharts(Scene& scene, const SceneCharts& charts);
 /// Hash of all that the maps depend on: geometry, materials, textures, lights, and the format's version.
 std::uint64_t sceneKey(const Scene& scene);
 
+/// Hash of all that look-ups in maps and their charts read.
+std::uint64_t contentHash(const IlluminationMaps& maps);
+
 /// $XDG_CACHE_HOME/saccade/<hash>.maps (or ~/.cache). `settings` tells quality, photons and seed apart.
 std::filesystem::path defaultMapsPath(std::uint64_t key, const std::string& settings);
 

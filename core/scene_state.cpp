@@ -84,7 +84,7 @@ void addTexture(ContentHash& hash, const Texture& t) {
   hash.add(t.image.height());
   const auto& pixels = t.image.pixels();
   static_assert(sizeof(Rgba8) == 4);
-  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size() * sizeof(Rgba8)));
+  hash.addArray(pixels);
   hash.add(t.wrapS);
   hash.add(t.wrapT);
   hash.add(t.nearest);
@@ -129,7 +129,7 @@ void addEnvironment(ContentHash& hash, const Environment& e) {
   hash.add(e.radiance.height());
   const auto& pixels = e.radiance.pixels();
   static_assert(sizeof(Vec3) == 12);
-  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size() * sizeof(Vec3)));
+  hash.addArray(pixels);
   hash.add(e.rotation);
 }
 

@@ -135,8 +135,7 @@ std::uint64_t frameHash(const core::ImageRgba8& image) {
   core::ContentHash hash;
   hash.add(image.width());
   hash.add(image.height());
-  hash.add(
-      std::span(reinterpret_cast<const std::uint8_t*>(image.pixels().data()), 4 * image.pixels().size()));
+  hash.addArray(image.pixels());
   return hash.value();
 }
 

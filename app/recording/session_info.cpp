@@ -10,16 +10,6 @@
 
 namespace saccade::app {
 
-namespace {
-
-template <class T>
-void addAll(core::ContentHash& hash, const std::vector<T>& values) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)));
-}
-
-}  // namespace
-
 std::string cpuName() {
   std::ifstream stream("/proc/cpuinfo");
   for (std::string line; std::getline(stream, line);) {
@@ -28,22 +18,6 @@ std::string cpuName() {
     return colon == std::string::npos ? "" : line.substr(colon + 2);
   }
   return "";
-}
-
-std::uint64_t contentHash(const core::IlluminationMaps& maps) {
-  core::ContentHash hash;
-  for (const int number : {maps.width, maps.height, maps.layers, maps.detail.height}) hash.add(number);
-  addAll(hash, maps.texels);
-  addAll(hash, maps.detail.blocks);
-  addAll(hash, maps.detail.texels);
-  addAll(hash, maps.charts.places);
-  for (const core::MeshCharts& mesh : maps.charts.meshes) {
-    hash.add(mesh.perVertex);
-    addAll(hash, mesh.sourceVertex);
-    addAll(hash, mesh.uv);
-    addAll(hash, mesh.indices);
-  }
-  return hash.value();
 }
 
 SessionInfo describeSession(const SceneOptions& scene, const std::filesystem::path& maps,
@@ -56,7 +30,7 @@ SessionInfo describeSession(const SceneOptions& scene, const std::filesystem::pa
     info.scene.load.environment = std::filesystem::absolute(scene.load.environment).string();
   info.sceneHash = workspace.maps.key;
   info.maps = std::filesystem::absolute(maps);
-  info.mapsHash = contentHash(workspace.maps);
+  info.mapsHash = core::contentHash(workspace.maps);
   info.on = std::move(on);
   info.seed = run.seed;
   info.threads = tracerThreads(run);

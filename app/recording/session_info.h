@@ -33,9 +33,6 @@ struct SessionInfo {
 /// The processor's model, as /proc/cpuinfo has it; empty where it does not tell.
 std::string cpuName();
 
-/// Of all that look-ups in maps and their charts read.
-std::uint64_t contentHash(const core::IlluminationMaps& maps);
-
 /// `maps`: the file the workspace's maps are in.
 SessionInfo describeSession(const SceneOptions& scene, const std::filesystem::path& maps,
                             const Workspace& workspace, const RunOptions& run,

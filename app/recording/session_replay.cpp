@@ -40,7 +40,7 @@ std::unique_ptr<Workspace> openRecorded(const SessionReader& session, const std:
                       " are not there any more; bake them as they were, or name them with --maps");
   workspace->maps = core::readMaps(maps, info.sceneHash);
   workspace->mapsWereThere = true;
-  if (contentHash(workspace->maps) != info.mapsHash)
+  if (core::contentHash(workspace->maps) != info.mapsHash)
     throw core::Error(maps.string() + ": are not the illumination maps that " + session.file().string() +
                       " was recorded with; name those with --maps, or record again");
   core::applyCharts(workspace->scene, workspace->maps.charts);

@@ -19,17 +19,6 @@ std::filesystem::path noteFile(const core::Scene& scene, const std::string& sett
   return core::cacheFolder() / (core::cacheName(hash.value()) + ".newest");
 }
 
-std::uint64_t lightOf(const core::IlluminationMaps& maps) {
-  core::ContentHash hash;
-  const auto add = [&](const std::vector<std::uint16_t>& texels) {
-    hash.add(
-        std::span(reinterpret_cast<const std::uint8_t*>(texels.data()), texels.size() * sizeof texels[0]));
-  };
-  add(maps.texels);
-  add(maps.detail.texels);
-  return hash.value();
-}
-
 }  // namespace
 
 std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::SceneState& state,
@@ -44,7 +33,7 @@ std::optional<EarlierMaps> earlierMaps(const core::Scene& scene, const core::Sce
       return std::nullopt;
     }
     EarlierMaps earlier{core::readMaps(note.maps, note.key), std::move(note.scene)};
-    if (lightOf(earlier.maps) != note.light) {
+    if (core::contentHash(earlier.maps) != note.light) {
       spdlog::info("{} was written anew since its scene was noted: baking everything", note.maps);
       return std::nullopt;
     }
@@ -63,9 +52,10 @@ void rememberMaps(const Workspace& opened, const core::SceneState& state, const 
     const std::filesystem::path note = noteFile(opened.scene, settings);
     std::error_code ignored;  // writing says what is wrong
     std::filesystem::create_directories(note.parent_path(), ignored);
-    writeNote(
-        note,
-        {std::filesystem::absolute(file).string(), opened.maps.key, lightOf(opened.maps), {state, drift}});
+    writeNote(note, {std::filesystem::absolute(file).string(),
+                     opened.maps.key,
+                     core::contentHash(opened.maps),
+                     {state, drift}});
   } catch (const core::Error& e) {
     spdlog::debug("{}", e.what());
   }

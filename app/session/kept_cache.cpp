@@ -17,31 +17,11 @@
 namespace saccade::app {
 namespace {
 
-template <class T>
-void addArray(core::ContentHash& hash, const std::vector<T>& values) {
-  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)));
-}
-
-std::uint64_t contentOf(const core::IlluminationMaps& maps) {
-  core::ContentHash hash;
-  for (const int n : {maps.width, maps.height, maps.layers, maps.detail.height}) hash.add(n);
-  addArray(hash, maps.texels);
-  addArray(hash, maps.detail.blocks);
-  addArray(hash, maps.detail.texels);
-  addArray(hash, maps.charts.places);
-  for (const core::MeshCharts& mesh : maps.charts.meshes) {
-    addArray(hash, mesh.uv);
-    addArray(hash, mesh.indices);
-    hash.add(mesh.perVertex);
-  }
-  return hash.value();
-}
-
 /// The executable, byte by byte: whoever builds it anew need not think of a version.
 std::uint64_t programHash() {
   core::ContentHash hash;
   hash.add(kKeptVersion);
-  addArray(hash, core::readWholeFile("/proc/self/exe"));
+  hash.addArray(core::readWholeFile("/proc/self/exe"));
   return hash.value();
 }
 
@@ -92,7 +72,8 @@ KeptCache::KeptCache(const Workspace& workspace, const SceneOptions& scene,
   core::ContentHash settings;
   settings.add(corrective.samplesPerPixel);
   settings.add(seed);
-  origin_ = {workspace.maps.key, contentOf(workspace.maps), settings.value(), programHash(), machineHash()};
+  origin_ = {workspace.maps.key, core::contentHash(workspace.maps), settings.value(), programHash(),
+             machineHash()};
 }
 
 void KeptCache::restore(FrameLoop& loop) const {

@@ -1,8 +1,8 @@
 // `walk --keep-cache`: the samples of one visit are where the next one of the same scene begins.
 //
-// One file a scene file in the cache folder. Samples of another state of the scene, other maps, other --spp
-// or
-// --seed, or another build of the program are not used: each of these changes corrections. --delta, --nmin,
+// One file a scene file in the cache folder. Samples of another state of the scene, other maps, another
+// --spp or --seed, or another build of the program are not used: each of these changes corrections. --delta,
+// --nmin,
 // --max-age, --cache-mb, --order and the image's size do not: they decide which samples are shown, kept or
 // traced first, and the first frame decides anew.
 #pragma once

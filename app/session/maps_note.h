@@ -12,7 +12,7 @@ namespace saccade::app {
 struct MapsNote {
   std::string maps;         ///< the map file
   std::uint64_t key = 0;    ///< core::sceneKey
-  std::uint64_t light = 0;  ///< hash of the maps' texels: the file may have been written anew since
+  std::uint64_t light = 0;  ///< core::contentHash of the maps: the file may have been written anew since
   raytrace::EarlierScene scene;
 };
 

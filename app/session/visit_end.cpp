@@ -1,7 +1,5 @@
 #include "app/session/visit_end.h"
 
-#include <span>
-
 #include "app/session/corrected_picture.h"
 #include "core/content_hash.h"
 
@@ -18,10 +16,8 @@ std::uint64_t agingHash(const PictureSettings& o) {
 
 std::uint64_t maskHash(const core::FrameSnapshot& frame) {
   core::ContentHash hash;
-  for (const std::vector<float>* values : {&frame.ids, &frame.depth}) {
-    hash.add(
-        std::span(reinterpret_cast<const std::uint8_t*>(values->data()), values->size() * sizeof(float)));
-  }
+  hash.addArray(frame.ids);
+  hash.addArray(frame.depth);
   return hash.value();
 }
 

@@ -240,8 +240,7 @@ int MaterialExporter::sampler(const Texture& from) {
 int MaterialExporter::image(const std::string& name, const ImageRgba8& pixels) {
   ContentHash hash;
   hash.add(pixels.width());
-  hash.add(std::span(reinterpret_cast<const std::uint8_t*>(pixels.pixels().data()),
-                     pixels.pixels().size() * sizeof(Rgba8)));
+  hash.addArray(pixels.pixels());
   const auto [at, isNew] = images_.try_emplace(hash.value(), 0);
   if (isNew) at->second = glb_.addImage(name, encodePng(pixels), "image/png");
   return at->second;
