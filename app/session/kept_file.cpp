@@ -10,7 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/byte_reader.h"
-#include "core/content_hash.h"
+#include "core/hashed_file.h"
 
 namespace saccade::app {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
 constexpr std::array<char, 8> kMagic = {'S', 'A', 'C', 'S', 'A', 'M', 'P', 'L'};
-/// The checksum is taken over pieces of this size.
-constexpr std::size_t kPiece = 1 << 20;
 /// Camera changes that no walk reaches.
 constexpr std::uint64_t kMostAges = std::uint64_t{1} << 48;
 /// Largest image side.
@@ -28,38 +26,12 @@ constexpr const char* kAdvice = "it will be written anew";
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// Through a buffer, so that a file takes no second copy of the cache.
-class Writer {
- public:
-  explicit Writer(const std::filesystem::path& file) : file_(file) { buffer_.reserve(kPiece); }
+struct Writer {
+  core::HashedFile file;
   template <class T>
   void operator()(const T& value) {
-    raw({reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
+    file.number(value);
   }
-  void commit() {
-    flush();
-    const std::uint64_t sum = hash_.value();
-    file_.write({reinterpret_cast<const std::uint8_t*>(&sum), sizeof sum});
-    file_.commit();
-  }
-
- private:
-  void raw(Bytes bytes) {
-    const std::size_t n = std::min(bytes.size(), kPiece - buffer_.size());
-    buffer_.insert(buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
-    if (buffer_.size() < kPiece) return;
-    flush();
-    buffer_.insert(buffer_.end(), bytes.begin() + static_cast<std::ptrdiff_t>(n), bytes.end());
-  }
-  void flush() {
-    if (buffer_.empty()) return;
-    hash_.add(buffer_);
-    file_.write(buffer_);
-    buffer_.clear();
-  }
-  core::AtomicFile file_;
-  core::ContentHash hash_;
-  std::vector<std::uint8_t> buffer_;
 };
 
 /// Counts what a Writer would write.
@@ -172,13 +144,6 @@ KeptVisit readHead(core::ByteReader& in) {
   return visit;
 }
 
-std::uint64_t checksum(Bytes bytes) {
-  core::ContentHash hash;
-  for (std::size_t at = 0; at < bytes.size(); at += kPiece)
-    hash.add(bytes.subspan(at, std::min(kPiece, bytes.size() - at)));
-  return hash.value();
-}
-
 /// One age's samples into the cache; the age.
 std::uint64_t readAge(core::ByteReader& in, std::uint64_t before, std::uint32_t idCount,
                       render::SampleCache& cache) {
@@ -208,7 +173,7 @@ KeptFile::KeptFile(const std::filesystem::path& file, const core::LoadLimits& li
   const std::size_t content = bytes_.size() - sizeof sum;
   std::memcpy(&sum, bytes_.data() + content, sizeof sum);
   bytes_.resize(content);
-  if (checksum(bytes_) != sum) in.refuse("is damaged or cut off");
+  if (core::HashedFile::hashOf(bytes_) != sum) in.refuse("is damaged or cut off");
   in = readerOf(Bytes(bytes_).subspan(kMagic.size()), file_);
   visit_ = readHead(in);
   samplesAt_ = otherBytes(0) - sizeof(std::uint64_t) - sizeof sum;
@@ -240,7 +205,7 @@ std::size_t writeKept(const std::filesystem::path& file, const KeptVisit& visit,
   std::size_t leftOut = cache.size() - std::min(cache.size(), room);
   const std::size_t written = cache.size() - leftOut;
 
-  Writer out(file);
+  Writer out{core::HashedFile(file)};
   out(kMagic);
   out(kKeptVersion);
   out(static_cast<std::uint32_t>(sampleBytes()));
@@ -265,7 +230,7 @@ std::size_t writeKept(const std::filesystem::path& file, const KeptVisit& visit,
     }
   });
   for (; next < ages.size(); ++next) begin(ages[next]);
-  out.commit();
+  out.file.commit();
   return written;
 }
 

@@ -60,6 +60,12 @@ Value Value::seconds(const std::vector<double>& repeats) {
 Value Value::rate(const std::vector<double>& repeats) {
   return over(repeats, "1/s", Kind::rate, Better::higher);
 }
+Value Value::perFrame(const std::vector<double>& repeats) {
+  Value value = rate(repeats);
+  value.unit = "1/frame";
+  return value;
+}
+
 Value Value::ratio(const std::vector<double>& repeats, Better better) {
   return over(repeats, "", Kind::ratio, better);
 }

@@ -41,6 +41,7 @@ struct Value {
   static Value milliseconds(const std::vector<double>& repeats);
   static Value seconds(const std::vector<double>& repeats);
   static Value rate(const std::vector<double>& repeats);
+  static Value perFrame(const std::vector<double>& repeats);
   static Value ratio(const std::vector<double>& repeats, Better better);
   static Value bytes(double value);
   /// The same figure in another unit, or by another measure of size.
@@ -48,6 +49,14 @@ struct Value {
   /// Errors of repeats that are not deterministic: pictures that had a time to be made in.
   static Value errors(const std::vector<double>& repeats);
 };
+
+/// One figure of every repeat.
+template <class Repeats, class Get>
+std::vector<double> each(const Repeats& repeats, Get get) {
+  std::vector<double> values;
+  for (const auto& repeat : repeats) values.push_back(get(repeat));
+  return values;
+}
 
 struct Record {
   std::string key;         ///< unique and stable: "still/cornell/corrective-attention@125ms"

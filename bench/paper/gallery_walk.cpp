@@ -48,20 +48,6 @@ double bareDrawMs(const Stage& stage, const app::CameraPath& path, int frames) {
   return spread(ms).median;
 }
 
-/// One figure of all repeats.
-template <class Get>
-std::vector<double> each(const std::vector<Walked>& walks, Get get) {
-  std::vector<double> values;
-  for (const Walked& w : walks) values.push_back(get(w));
-  return values;
-}
-
-Value perFrame(std::vector<double> samples) {
-  Value value = Value::rate(samples);
-  value.unit = "1/frame";
-  return value;
-}
-
 Record rateRecord(int fps, int frames, const std::vector<Walked>& walks) {
   const double budget = 1000.0 / fps;
   Value budgetValue = Value::count(budget);
@@ -81,8 +67,8 @@ Record rateRecord(int fps, int frames, const std::vector<Walked>& walks) {
        Value::ratio(each(walks, [&](const Walked& w) { return w.p95 / budget; }), Better::lower)},
       {"missed", missed},
       {"frames", Value::count(frames)},
-      {"samples_per_frame", perFrame(each(walks, [](const Walked& w) { return w.samples; }))},
-      {"samples_per_frame_p5", perFrame(each(walks, [](const Walked& w) { return w.samplesP5; }))}};
+      {"samples_per_frame", Value::perFrame(each(walks, [](const Walked& w) { return w.samples; }))},
+      {"samples_per_frame_p5", Value::perFrame(each(walks, [](const Walked& w) { return w.samplesP5; }))}};
   return record;
 }
 

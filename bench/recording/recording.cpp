@@ -68,19 +68,6 @@ Walked walkRecorded(const Stage& stage, const app::CameraPath& path, int frames,
   return walked;
 }
 
-template <class Get>
-std::vector<double> each(const std::vector<Walked>& walks, Get get) {
-  std::vector<double> values;
-  for (const Walked& w : walks) values.push_back(get(w));
-  return values;
-}
-
-Value perFrame(std::vector<double> samples) {
-  Value value = Value::rate(samples);
-  value.unit = "1/frame";
-  return value;
-}
-
 double medianOf(const std::vector<double>& values) { return spread(values).median; }
 
 }  // namespace
@@ -114,8 +101,8 @@ void measureRecording(Session& session) {
        Value::ratio(each(walks[1], [](const Walked& w) { return w.writerShare; }), Better::lower)},
       {"frame_p95", Value::milliseconds(each(walks[1], p95))},
       {"frame_p95_without", Value::milliseconds(each(walks[0], p95))},
-      {"samples_per_frame", perFrame(each(walks[1], samples))},
-      {"samples_per_frame_without", perFrame(each(walks[0], samples))},
+      {"samples_per_frame", Value::perFrame(each(walks[1], samples))},
+      {"samples_per_frame_without", Value::perFrame(each(walks[0], samples))},
       {"bytes_per_frame", Value::bytes(medianOf(bytes))},
       {"bytes_per_second", Value::bytes(medianOf(bytes) * kFps)}};
   session.add(record, &watch);

@@ -6,7 +6,7 @@
 
 #include "core/atomic_file.h"
 #include "core/byte_reader.h"
-#include "core/content_hash.h"
+#include "core/hashed_file.h"
 
 namespace saccade::raytrace {
 namespace {
@@ -18,55 +18,12 @@ constexpr std::uint32_t kByteOrder = 0x01020304;
 /// Results are looked at in words of so many bytes; fewer zeros in a row than kShortestRun are kept as they
 /// are.
 constexpr std::size_t kWord = 4, kShortestRun = 8;
-/// The checksum is taken over pieces of this size.
-constexpr std::size_t kPiece = 1 << 20;
 
 using Bytes = std::span<const std::uint8_t>;
 
 Bytes bytesOf(std::span<const std::byte> values) {
   return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size()};
 }
-
-std::uint64_t checksum(Bytes bytes) {
-  core::ContentHash hash;
-  for (std::size_t at = 0; at < bytes.size(); at += kPiece)
-    hash.add(bytes.subspan(at, std::min(kPiece, bytes.size() - at)));
-  return hash.value();
-}
-
-/// Writes through a buffer, so that a checkpoint takes no second copy of the results.
-class Writer {
- public:
-  explicit Writer(const std::filesystem::path& file) : file_(file) {}
-  template <class T>
-  void number(T value) {
-    raw({reinterpret_cast<const std::uint8_t*>(&value), sizeof value});
-  }
-  void raw(Bytes bytes) {
-    while (!bytes.empty()) {
-      const std::size_t n = std::min(bytes.size(), kPiece - buffer_.size());
-      buffer_.insert(buffer_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n));
-      bytes = bytes.subspan(n);
-      if (buffer_.size() == kPiece) flush();
-    }
-  }
-  void commit() {
-    if (!buffer_.empty()) flush();
-    const std::uint64_t sum = hash_.value();
-    file_.write({reinterpret_cast<const std::uint8_t*>(&sum), sizeof sum});
-    file_.commit();
-  }
-
- private:
-  void flush() {
-    hash_.add(buffer_);
-    file_.write(buffer_);
-    buffer_.clear();
-  }
-  core::AtomicFile file_;
-  core::ContentHash hash_;
-  std::vector<std::uint8_t> buffer_;
-};
 
 bool isZero(Bytes results, std::size_t word) {
   std::uint32_t value;
@@ -75,7 +32,7 @@ bool isZero(Bytes results, std::size_t word) {
 }
 
 /// (zero words, other words, those words) until the end. The size is a multiple of a word.
-void writeResults(Writer& out, Bytes results) {
+void writeResults(core::HashedFile& out, Bytes results) {
   const std::size_t words = results.size() / kWord;
   for (std::size_t at = 0; at < words;) {
     std::size_t first = at;
@@ -139,7 +96,7 @@ void checkHeader(core::ByteReader& in, std::uint64_t sceneKey, BakeJob& job) {
 }  // namespace
 
 void writeCheckpoint(const std::filesystem::path& file, std::uint64_t sceneKey, BakeJob& job) {
-  Writer out(file);
+  core::HashedFile out(file);
   out.raw({reinterpret_cast<const std::uint8_t*>(kMagic.data()), kMagic.size()});
   out.number(kVersion);
   out.number(kByteOrder);
@@ -166,7 +123,7 @@ void readCheckpoint(const std::filesystem::path& file, std::uint64_t sceneKey, B
   core::ByteReader in(content, file.string(), "checkpoint", advice);
   checkHeader(in, sceneKey, job);
   std::memcpy(&stated, bytes.data() + body, sizeof stated);
-  if (stated != checksum(content)) in.refuse("is damaged or cut off (checksum)");
+  if (stated != core::HashedFile::hashOf(content)) in.refuse("is damaged or cut off (checksum)");
   std::vector<StageState> states;
   for (const BakeStage& stage : job.stages()) states.push_back(readStage(in, stage));
   if (!in.atEnd()) in.refuse("has bytes after its end");

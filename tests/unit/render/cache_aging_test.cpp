@@ -20,14 +20,6 @@ using namespace testing;
 constexpr std::size_t kPlenty = std::size_t{64} << 20;
 constexpr std::size_t kPage = 256;
 
-core::View viewFrom(const Vec3& eye, const Vec3& at = Vec3(0)) {
-  core::Camera camera;
-  camera.eye = eye;
-  camera.at = at;
-  camera.up = Vec3(0.01f, 0.3f, 1);
-  return core::View(camera, 64, 64, unitScene());
-}
-
 Sample sample(std::uint32_t id, int level, const Vec3& position, const Vec3& normal, const Vec3& eye) {
   Sample s;
   s.id = id;

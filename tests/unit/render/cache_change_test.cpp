@@ -19,14 +19,6 @@ using namespace testing;
 
 constexpr std::size_t kPlenty = std::size_t{64} << 20;
 
-core::View viewFrom(const Vec3& eye, const Vec3& at = Vec3(0)) {
-  core::Camera camera;
-  camera.eye = eye;
-  camera.at = at;
-  camera.up = Vec3(0.01f, 0.3f, 1);
-  return core::View(camera, 64, 64, unitScene());
-}
-
 AgingOptions change(float delta, int maxAge = 30) {
   return {.nMin = 10, .delta = delta, .maxAge = maxAge, .test = AgingTest::change};
 }

@@ -24,6 +24,15 @@ inline core::Bounds unitScene() {
   return bounds;
 }
 
+/// 64 x 64 pixels.
+inline core::View viewFrom(const core::Vec3& eye, const core::Vec3& at = core::Vec3(0)) {
+  core::Camera camera;
+  camera.eye = eye;
+  camera.at = at;
+  camera.up = core::Vec3(0.01f, 0.3f, 1);
+  return core::View(camera, 64, 64, unitScene());
+}
+
 /// A frame whose pixel (x, y) shows what `at(view, x, y)` says.
 inline std::shared_ptr<core::FrameSnapshot> makeFrame(
     const core::View& view, const std::function<Surface(const core::View&, int, int)>& at) {
