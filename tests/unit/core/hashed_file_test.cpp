@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <vector>
 
-#include "tests/temporary_folder.h"
+#include "tests/unit/core/temporary_folder.h"
 
 namespace saccade::core {
 namespace {
