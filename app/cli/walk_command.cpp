@@ -87,9 +87,8 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
 }
 
 int walk(const WalkOptions& o) {
-  const auto workspace = openWorkspace(o.scene, bakeOf(o), interruptToken());
-  if (o.headless) return walkHeadless(o, *workspace);
-  return runViewer(o, *workspace);
+  if (!o.headless) return runViewer(o);
+  return walkHeadless(o, *openWorkspace(o.scene, bakeOf(o), interruptToken()));
 }
 
 }  // namespace

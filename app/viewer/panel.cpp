@@ -25,6 +25,7 @@ const std::vector<KeyHelp>& keyHelp() {
                                          {"C", "corrections on / off"},
                                          {"R", "reuse of samples on / off"},
                                          {"Home", "back to the first camera"},
+                                         {"Tab", "panel on / off"},
                                          {"F11", "full screen"},
                                          {"F12", "save a screenshot"},
                                          {"F1", "these keys"},
@@ -34,21 +35,27 @@ const std::vector<KeyHelp>& keyHelp() {
 
 namespace {
 
-void drawControls(PanelState& s) {
+void drawControls(PanelState& s, UiItems& items) {
   ImGui::TextUnformatted("Attention");
   ImGui::SliderFloat("##attention", &s.attention, 0, 1, "");
+  items.note("attention");
   ImGui::TextUnformatted("saliency");
   ImGui::SameLine(kPanelWidth - 110);
   ImGui::TextUnformatted("task");
   ImGui::SliderFloat("fps", &s.fps, 1, 60, "%.0f");
+  items.note("fps");
   ImGui::SliderFloat("EV", &s.exposureEv, -8, 8, "%+.1f");
+  items.note("exposure");
   ImGui::SliderFloat("delta", &s.delta, 0.01f, 0.4f, "%.2f");
+  items.note("delta");
   ImGui::Checkbox("corrections", &s.corrections);
+  items.note("corrections");
   ImGui::SameLine();
   ImGui::Checkbox("reuse samples", &s.reuse);
+  items.note("reuse");
 }
 
-void drawOverlayChoice(PanelState& s) {
+void drawOverlayChoice(PanelState& s, UiItems& items) {
   const char* current = s.overlay ? aovNames()[static_cast<std::size_t>(*s.overlay)].c_str() : "none";
   if (ImGui::BeginCombo("overlay", current)) {
     if (ImGui::Selectable("none", !s.overlay)) s.overlay.reset();
@@ -58,6 +65,7 @@ void drawOverlayChoice(PanelState& s) {
     }
     ImGui::EndCombo();
   }
+  items.note("overlay");
   if (s.overlay) ImGui::TextWrapped("%s", aovLegend(*s.overlay));
 }
 
@@ -101,30 +109,33 @@ void drawKeys(PanelState& s, int height) {
 
 }  // namespace
 
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times,
-               const LiveError::State& error, int framebufferWidth, int framebufferHeight) {
-  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(framebufferWidth - kPanelWidth), 0));
-  ImGui::SetNextWindowSize(ImVec2(kPanelWidth, static_cast<float>(framebufferHeight)));
+void drawPanel(PanelState& state, const PanelView& view) {
+  if (state.showKeys) drawKeys(state, view.area.height);
+  if (view.area.width < 1) return;
+  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(view.area.x), static_cast<float>(view.area.y)));
+  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(view.area.width), static_cast<float>(view.area.height)));
   ImGui::Begin("Saccade", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
   ImGui::PushItemWidth(kPanelWidth - 90);
-  drawControls(state);
+  drawControls(state, view.items);
   ImGui::Separator();
-  drawOverlayChoice(state);
+  drawOverlayChoice(state, view.items);
   ImGui::Separator();
-  drawFrameTimes(state, times);
-  drawCounts(loop);
+  drawFrameTimes(state, view.times);
+  drawCounts(view.loop);
   ImGui::Separator();
   if (ImGui::Button("Screenshot (F12)")) state.screenshotWanted = true;
+  view.items.note("screenshot");
   ImGui::SameLine();
   if (ImGui::Button("Keys (F1)")) state.showKeys = !state.showKeys;
+  view.items.note("keys");
   if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
   ImGui::SetNextItemOpen(state.errorPlotOpen);
   state.errorPlotOpen = ImGui::CollapsingHeader("Error against seconds at rest");
-  if (state.errorPlotOpen) drawErrorPlot(error, state.corrections);
+  view.items.note("errorPlot");
+  if (state.errorPlotOpen) drawErrorPlot(view.error, state.corrections);
   ImGui::PopItemWidth();
   ImGui::End();
-  if (state.showKeys) drawKeys(state, framebufferHeight);
 }
 
 }  // namespace saccade::app

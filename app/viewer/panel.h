@@ -9,6 +9,8 @@
 #include "app/session/frame_loop.h"
 #include "app/session/live_error.h"
 #include "app/session/overlays.h"
+#include "app/viewer/ui_items.h"
+#include "render/window/presenter.h"
 
 namespace saccade::app {
 
@@ -26,6 +28,7 @@ struct PanelState {
   /// Error is measured only while its plot can be seen. Open at first: the work takes only time that nothing
   /// else wants, and a curve that starts when it is asked for has lost its beginning.
   bool errorPlotOpen = true;
+  bool visible = true;  ///< else the picture has the whole window
   bool showKeys = false;
   bool screenshotWanted = false;
   std::string message;  ///< last thing done, such as the name of a screenshot
@@ -49,9 +52,16 @@ struct KeyHelp {
 };
 const std::vector<KeyHelp>& keyHelp();
 
-/// Between ImguiLayer::newFrame and render. The panel takes the right `kPanelWidth` pixels of the
-/// framebuffer.
-void drawPanel(PanelState& state, const FrameLoop& loop, const FrameTimes& times,
-               const LiveError::State& error, int framebufferWidth, int framebufferHeight);
+/// What the panel shows of the open scene, and where.
+struct PanelView {
+  const FrameLoop& loop;
+  const FrameTimes& times;
+  const LiveError::State& error;
+  render::PixelRect area;  ///< framebuffer pixels; of no width while the panel is hidden
+  UiItems& items;          ///< the panel's controls are noted there
+};
+
+/// Between ImguiLayer::newFrame and render.
+void drawPanel(PanelState& state, const PanelView& view);
 
 }  // namespace saccade::app

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "app/cli/walk_options.h"
-#include "app/session/workspace.h"
+#include "app/viewer/viewer_state.h"
 
 namespace saccade::app {
 
-/// Runs until the window is closed. Main thread only. Returns the exit status. Throws core::Error when there
-/// is no display, saying how to walk off screen.
-int runViewer(const WalkOptions& options, const Workspace& workspace);
+/// Opens the scene and runs until the window is closed. Main thread only. Returns the exit status. Throws
+/// core::Error when there is no display, saying how to walk off screen, and when the scene cannot be opened.
+int runViewer(const WalkOptions& options, const ViewerObserver& afterFrame = {});
 
 }  // namespace saccade::app
