@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <ctime>
 #include <exception>
 #include <optional>
@@ -84,7 +85,8 @@ void SessionRecorder::push(Item item) {
     }
     wake = waitingBytes_ / kWakeBytes != (waitingBytes_ + bytes) / kWakeBytes;
     waitingBytes_ += bytes;
-    waiting_.push_back(std::move(item));
+    if (waiting_.items.empty()) waiting_.first = Clock::now();
+    waiting_.items.push_back(std::move(item));
   }
   if (wake) arrived_.notify_one();
 }
@@ -107,13 +109,16 @@ void SessionRecorder::work(const SessionInfo& info) {
 }
 
 void SessionRecorder::writeAll(SessionWriter& writer) {
+  std::optional<Clock::time_point> atRiskSince;
   for (;;) {
-    std::deque<Item> items = waitForItems();
-    if (items.empty()) {
+    Arrivals arrivals = waitForItems();
+    if (arrivals.items.empty()) {
       const std::lock_guard lock(mutex_);
-      if (failed_ || (ending_ && waiting_.empty())) return;
+      if (failed_ || (ending_ && waiting_.items.empty())) return;
+    } else if (!atRiskSince) {
+      atRiskSince = arrivals.first;
     }
-    for (Item& item : items) {
+    for (Item& item : arrivals.items) {
       const std::size_t bytes = bytesOf(item);
       write(writer, item);
       {
@@ -122,12 +127,16 @@ void SessionRecorder::writeAll(SessionWriter& writer) {
       }
       written_.notify_one();
     }
-    writer.commitIfDue();
+    if (atRiskSince && writer.commitIfDue()) {
+      const std::chrono::duration<double> atRisk = Clock::now() - *std::exchange(atRiskSince, {});
+      const std::lock_guard lock(mutex_);
+      outcome_.longestAtRiskSeconds = std::max(outcome_.longestAtRiskSeconds, atRisk.count());
+    }
   }
 }
 
 /// Nothing after kPoll, or when there is nothing more to come.
-std::deque<SessionRecorder::Item> SessionRecorder::waitForItems() {
+SessionRecorder::Arrivals SessionRecorder::waitForItems() {
   std::unique_lock lock(mutex_);
   arrived_.wait_for(lock, kPoll, [this] { return ending_ || waitingBytes_ >= kWakeBytes; });
   return std::exchange(waiting_, {});
@@ -146,7 +155,7 @@ void SessionRecorder::fail(const std::string& why, std::int64_t frames) {
   {
     const std::lock_guard lock(mutex_);
     if (std::exchange(failed_, true)) return;
-    waiting_.clear();
+    waiting_.items.clear();
   }
   written_.notify_all();
   if (frames > 0) {

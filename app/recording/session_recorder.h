@@ -1,6 +1,7 @@
 // `walk --record`: hands what a frame loop shows to a thread that writes it.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,8 @@ class SessionRecorder : public SessionSink {
     std::int64_t frames = 0;      ///< recorded; where incomplete, the last second's may be missing
     std::uint64_t samples = 0;    ///< recorded
     double writerCpuSeconds = 0;  ///< of the writing thread
+    /// The longest that anything handed over was not yet committed: no kill could have cost more of the walk.
+    double longestAtRiskSeconds = 0;
   };
 
   /// Throws core::Error when `file` exists and is not a recording. Another failure is logged, and nothing
@@ -50,17 +53,24 @@ class SessionRecorder : public SessionSink {
   Outcome finish();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   struct PendingFrame {
     RecordedFrame frame;
     std::shared_ptr<const core::ImageRgba8> display;
   };
   using Item = std::variant<core::SampleBatch, PendingFrame>;
+  /// What came in since the writer looked last.
+  struct Arrivals {
+    std::deque<Item> items;
+    Clock::time_point first;  ///< when the first of them came
+  };
 
   static std::size_t bytesOf(const Item& item);
   void push(Item item);
   void work(const SessionInfo& info);
   void writeAll(SessionWriter& writer);
-  std::deque<Item> waitForItems();
+  Arrivals waitForItems();
   void write(SessionWriter& writer, Item& item);
   void fail(const std::string& why, std::int64_t frames);
 
@@ -68,7 +78,7 @@ class SessionRecorder : public SessionSink {
   double seconds_ = 0;
   std::mutex mutex_;  ///< of what follows
   std::condition_variable arrived_, written_;
-  std::deque<Item> waiting_;
+  Arrivals waiting_;
   std::size_t waitingBytes_ = 0;  ///< of waiting_ and of what is being written
   bool ending_ = false;
   bool failed_ = false;

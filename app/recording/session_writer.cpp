@@ -257,10 +257,11 @@ void SessionWriter::write(const RecordedFrame& frame) {
   }
 }
 
-void SessionWriter::commitIfDue() {
-  if (!state_->open || Clock::now() - state_->begun < state_->commitEvery) return;
+bool SessionWriter::commitIfDue() {
+  if (!state_->open || Clock::now() - state_->begun < state_->commitEvery) return false;
   try {
     state_->commit();
+    return true;
   } catch (const SQLite::Exception& e) {
     fail(state_->file, e);
   }

@@ -32,8 +32,8 @@ class SessionWriter {
   void write(const core::SampleBatch& batch);
   /// The batches since the last frame belong to it.
   void write(const RecordedFrame& frame);
-  /// Commits if a transaction is old enough; call at least as often as that.
-  void commitIfDue();
+  /// Commits if a transaction is old enough, and says whether it did; call at least as often as that.
+  bool commitIfDue();
   /// Commits the rest and makes one plain file of it.
   void finish();
 

@@ -22,6 +22,7 @@ struct Walked {
   double p95 = 0, samples = 0;
   double handOverMs = 0, writerShare = 0;  ///< a frame's; of the walk's time
   double bytesPerFrame = 0;
+  double atRiskMs = 0;
 };
 
 /// Of a session that nobody replays: any path of the maps will do.
@@ -62,6 +63,7 @@ Walked walkRecorded(const Stage& stage, const app::CameraPath& path, int frames,
   Walked walked = walk(stage, path, frames, &*recorder);
   const app::SessionRecorder::Outcome outcome = recorder->finish();
   if (!outcome.complete) throw core::Error("the recording experiment needs room in " + file.string());
+  walked.atRiskMs = 1000 * outcome.longestAtRiskSeconds;
   walked.writerShare = outcome.writerCpuSeconds * kFps / frames;
   walked.bytesPerFrame = static_cast<double>(std::filesystem::file_size(file)) / frames;
   std::filesystem::remove(file);
@@ -99,6 +101,7 @@ void measureRecording(Session& session) {
                              Better::lower)},
       {"writer_share",
        Value::ratio(each(walks[1], [](const Walked& w) { return w.writerShare; }), Better::lower)},
+      {"at_risk", Value::milliseconds(each(walks[1], [](const Walked& w) { return w.atRiskMs; }))},
       {"frame_p95", Value::milliseconds(each(walks[1], p95))},
       {"frame_p95_without", Value::milliseconds(each(walks[0], p95))},
       {"samples_per_frame", Value::perFrame(each(walks[1], samples))},
