@@ -13,8 +13,15 @@ float clampWeight(float weight) { return weight >= 0 ? std::min(weight, 1.0f) : 
 
 }  // namespace
 
-Analyzer::Analyzer(const AttentionOptions& options)
-    : options_(options), attention_(clampWeight(options.attention)), model_(options.saliency) {}
+double Analyzer::steadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Analyzer::Analyzer(const AttentionOptions& options, std::function<double()> seconds)
+    : options_(options),
+      seconds_(std::move(seconds)),
+      attention_(clampWeight(options.attention)),
+      model_(options.saliency) {}
 
 void Analyzer::start(core::SnapshotMailbox& mailbox, core::RegionQueue& queue) {
   assert(!thread_.joinable());
@@ -35,6 +42,18 @@ std::vector<float> Analyzer::analyzeNow(const core::AnalysisInput& input) {
 
 void Analyzer::setAttention(float weight) {
   attention_.store(clampWeight(weight), std::memory_order_relaxed);
+}
+
+void Analyzer::attend(std::uint32_t id) {
+  const double now = seconds_();
+  const std::lock_guard lock(mutex_);
+  attended_.attend(id, now);
+}
+
+std::vector<float> Analyzer::attendedNow(std::size_t entries) {
+  const double now = seconds_();
+  const std::lock_guard lock(mutex_);
+  return attended_.at(now, entries);
 }
 
 std::shared_ptr<const AttentionSnapshot> Analyzer::latest() const {
@@ -59,7 +78,8 @@ std::shared_ptr<const AttentionSnapshot> Analyzer::analyze(const core::AnalysisI
   auto result = std::make_shared<AttentionSnapshot>();
   result->epoch = input.frame->epoch;
   if (needsSaliency(options.order)) result->saliency = model_.compute(*input.display);
-  result->importance = importanceOf(*input.frame, result->saliency, options);
+  result->importance =
+      importanceOf(*input.frame, result->saliency, options, attendedNow(input.frame->extents.size()));
   result->milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   const std::lock_guard lock(mutex_);

@@ -5,11 +5,13 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "attention/attended.h"
 #include "attention/importance.h"
 #include "attention/saliency.h"
 #include "core/corrective/messages.h"
@@ -33,7 +35,8 @@ struct AnalyzerTimes {
 /// Construct, start and stop on one thread.
 class Analyzer {
  public:
-  explicit Analyzer(const AttentionOptions& options);
+  /// `seconds`: the clock by which attention decays; called from any thread.
+  explicit Analyzer(const AttentionOptions& options, std::function<double()> seconds = steadySeconds);
   ~Analyzer() { stop(); }
   Analyzer(const Analyzer&) = delete;
   Analyzer& operator=(const Analyzer&) = delete;
@@ -51,6 +54,10 @@ class Analyzer {
   void setAttention(float weight);
   float attention() const { return attention_.load(std::memory_order_relaxed); }
 
+  /// A person points at an object: its importance rises and decays (attention/attended.h), whatever the
+  /// order; counts from the next analysis. 0, an object out of sight or of no frame: harmless. Any thread.
+  void attend(std::uint32_t id);
+
   /// The last analysis, or nothing before the first. Any thread.
   std::shared_ptr<const AttentionSnapshot> latest() const;
   /// Any thread.
@@ -59,14 +66,18 @@ class Analyzer {
   void check() const;
 
  private:
+  static double steadySeconds();
+  std::vector<float> attendedNow(std::size_t entries);
   std::shared_ptr<const AttentionSnapshot> analyze(const core::AnalysisInput& input);
   void run(core::SnapshotMailbox& mailbox, core::RegionQueue& queue);
 
   const AttentionOptions options_;
+  const std::function<double()> seconds_;
   std::atomic<float> attention_;
   SaliencyModel model_;  ///< the analyzing thread's
 
   mutable std::mutex mutex_;
+  AttendedObjects attended_;
   std::shared_ptr<const AttentionSnapshot> latest_;
   AnalyzerTimes times_;
   std::exception_ptr failure_;

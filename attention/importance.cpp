@@ -1,8 +1,10 @@
 #include "attention/importance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/math/random.h"
@@ -78,8 +80,10 @@ std::vector<float> taskImportance(const FrameSnapshot& frame) {
 }
 
 Importance importanceOf(const FrameSnapshot& frame, const core::ImageGray& saliency,
-                        const AttentionOptions& options) {
+                        const AttentionOptions& options, std::vector<float> attended) {
+  assert(attended.empty() || attended.size() == frame.extents.size());
   Importance out;
+  out.attended = std::move(attended);
   if (needsSaliency(options.order)) out.saliency = objectSaliency(frame, saliency);
   out.task = taskImportance(frame);
   out.priority.assign(frame.extents.size(), 0.0f);
@@ -103,6 +107,7 @@ Importance importanceOf(const FrameSnapshot& frame, const core::ImageGray& salie
         out.priority[id] = static_cast<float>(extent.pixels / pixelCount(frame));
         break;
     }
+    if (!out.attended.empty()) out.priority[id] += out.attended[id];
   }
   return out;
 }

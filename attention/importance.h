@@ -31,7 +31,8 @@ struct AttentionOptions {
 struct Importance {
   std::vector<float> saliency;  ///< [0, 1]; empty when the order does not ask for saliency
   std::vector<float> task;      ///< (0, 1] where visible
-  std::vector<float> priority;  ///< (0, 1] where visible
+  std::vector<float> attended;  ///< [0, 1], what clicks add; empty when nothing is attended to
+  std::vector<float> priority;  ///< where visible: (0, 1] by the order, plus `attended`
 };
 
 /// Mean saliency over each object's mask; the map has the frame's size, else core::Error. The mean, not a
@@ -47,9 +48,10 @@ std::vector<float> objectSaliency(const core::FrameSnapshot& frame, const core::
 /// p). Any thread.
 std::vector<float> taskImportance(const core::FrameSnapshot& frame);
 
-/// All of it. `saliency` may be empty for orders other than `attention` (see needsSaliency). Any thread.
+/// All of it. `saliency` may be empty for orders other than `attention` (see needsSaliency); `attended`
+/// (attention/attended.h) is empty or has an entry for each of the frame's extents. Any thread.
 Importance importanceOf(const core::FrameSnapshot& frame, const core::ImageGray& saliency,
-                        const AttentionOptions& options);
+                        const AttentionOptions& options, std::vector<float> attended = {});
 
 inline bool needsSaliency(Order order) { return order == Order::attention; }
 

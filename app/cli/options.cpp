@@ -149,6 +149,13 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->option_text("NAME [attention]")
       ->group(group);
   command
+      .add_option("--inhibition", o.inhibition,
+                  "Inhibition of return: the share of its priority that an object loses with every level of "
+                  "samples; 0 = winner takes all: the first in the order is corrected until it has converged")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  command
       .add_option("--aging", o.aging,
                   "Test that cached samples must pass: haber (the paper's section 4.5: change of <normal, "
                   "view direction>) or change (expected change of what is displayed, sample by sample)")

@@ -9,6 +9,7 @@
 
 #include "attention/importance.h"
 #include "core/camera.h"
+#include "core/corrective/queues.h"
 #include "core/scene/load.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
@@ -55,6 +56,7 @@ struct CorrectiveOptions {
   int nMin = 10;
   int maxAge = 30;
   int cacheMb = 64;
+  float inhibition = core::RegionQueue::kInhibition;
   int jobSize = 64;
   int samplesPerPixel = 1;
 };

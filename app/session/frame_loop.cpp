@@ -29,7 +29,7 @@ PictureSettings settingsOf(const FrameLoopOptions& o) {
 FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer,
                      const FrameLoopOptions& options)
     : options_(options),
-      regions_(options.corrective.jobSize),
+      regions_(options.corrective.jobSize, options.corrective.inhibition),
       tracer_(*workspace.world,
               {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
       picture_(workspace.scene, renderer, settingsOf(options), stats_),
@@ -53,7 +53,12 @@ void FrameLoop::step(const core::Camera& camera, ImageSize size, const FrameBudg
   analyzer_.check();
   const std::uint64_t tracedBefore = stats_.samplesTraced;
   const bool newView = !picture_.shows(camera, size);
-  if (newView) beginFrame(camera, size);
+  if (newView) {
+    beginFrame(camera, size);
+  } else if (newlyAttended_ && !options_.asynchronousAnalysis) {
+    analyseNow();  // regions keep their progress; an analyzer thread is fed by every frame
+  }
+  newlyAttended_ = false;
   {
     const StageTimer timer(stats_, "correct");
     correct(start, budget, stop);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "app/cli/options.h"
 #include "app/session/corrected_picture.h"
@@ -97,6 +98,14 @@ class FrameLoop {
     analyzer_.setAttention(weight);
     options_.corrective.attention.attention = weight;
   }
+  /// A person points at an object: attention::Analyzer::attend. At rest too the next step corrects it first.
+  /// A recording holds the samples as they arrived, so a replay needs to know of no click.
+  void attend(std::uint32_t id) {
+    analyzer_.attend(id);
+    newlyAttended_ = true;
+  }
+  /// What is corrected next, by id: RegionQueue::ranks. Importance is analyzer().latest()'s.
+  std::vector<std::uint32_t> ranks() const { return regions_.ranks(); }
   void setExposure(float ev) { picture_.settings().exposureEv = ev; }
   void setDelta(float delta) { picture_.settings().delta = delta; }
   /// Off: the base layer alone is shown; samples go on being traced.
@@ -140,7 +149,8 @@ class FrameLoop {
   raytrace::CorrectiveTracer tracer_;
   RunStats stats_;
   CorrectedPicture picture_;
-  double tailSeconds_ = 0;  ///< running mean of steps 7 and 8, kept free of the deadline
+  bool newlyAttended_ = false;  ///< since the last step
+  double tailSeconds_ = 0;      ///< running mean of steps 7 and 8, kept free of the deadline
   std::map<std::uint64_t, core::SampleBatch>
       pending_;                     ///< sample budget: batches of this frame not yet taken
   std::uint64_t nextSequence_ = 0;  ///< sample budget: after what was taken of this frame

@@ -51,7 +51,7 @@ bool RegionQueue::later(const Region& a, const Region& b) {
 float RegionQueue::reducedPriority(const Region& region) const {
   float priority = basePriority_[region.id];
   for (int l = frame_->extents[region.id].startLevel; l < region.cursor.level; ++l) {
-    priority *= kLevelReduction;
+    priority *= kept_;
   }
   return priority;
 }
@@ -83,7 +83,8 @@ void RegionQueue::setPriorities(std::span<const float> byId) {
   for (std::size_t id = 1; id < byId.size(); ++id) {
     // 0 = the analysis did not see the object: should it come into view, it starts ahead of what is partly
     // corrected.
-    const float given = byId[id] > 0 ? std::clamp(byId[id], kLowestPriority, 1.0f) : kLowestPriority;
+    const float given =
+        byId[id] > 0 ? std::clamp(byId[id], kLowestPriority, kHighestPriority) : kLowestPriority;
     basePriority_[id] = byId[id] == 0 ? kUnseenPriority : given;
   }
   for (Region& region : heap_) region.priority = reducedPriority(region);
@@ -128,6 +129,20 @@ void RegionQueue::close() {
     closed_ = true;
   }
   filled_.notify_all();
+}
+
+std::vector<std::uint32_t> RegionQueue::ranks() const {
+  std::vector<Region> regions;
+  std::vector<std::uint32_t> ranks;
+  {
+    const std::lock_guard lock(mutex_);
+    regions = heap_;
+    ranks.resize(frame_ ? frame_->extents.size() : 0);
+  }
+  std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) { return later(b, a); });
+  std::uint32_t rank = 0;
+  for (const Region& region : regions) ranks[region.id] = ++rank;
+  return ranks;
 }
 
 bool RegionQueue::exhausted() const {

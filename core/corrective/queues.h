@@ -40,19 +40,23 @@ class SnapshotMailbox {
 /// knows levels.
 class RegionQueue {
  public:
-  explicit RegionQueue(int jobSize) : jobSize_(jobSize < 1 ? 1 : jobSize) {}
+  /// `inhibition` in [0, 1]: the share of its priority that a region loses with each level that is done.
+  /// kInhibition is section 3's 10 % rule; 0 is winner-takes-all: the best region until it has converged,
+  /// then the next.
+  explicit RegionQueue(int jobSize, float inhibition = kInhibition)
+      : jobSize_(jobSize < 1 ? 1 : jobSize), kept_(1 - inhibition) {}
 
   /// A new frame: every region starts again at its object's start level, with its last known priority (1 for
   /// an object that the analyzer has not seen yet). Sequence numbers start at 0 with every new epoch.
   void beginFrame(FramePtr frame);
-  /// Priorities in (0, 1] by id, from the analyzer; ids beyond the span keep theirs, and [0] is ignored.
-  /// Values above 1 count as 1, NaN and negative ones as kLowestPriority, 0 (not in the picture) as
-  /// kUnseenPriority. Regions keep their progress; the reductions by level that they have suffered are
-  /// applied again.
+  /// Priorities in (0, kHighestPriority] by id, from the analyzer; ids beyond the span keep theirs, and [0]
+  /// is ignored. Higher values count as kHighestPriority, NaN and negative ones as kLowestPriority, 0 (not in
+  /// the picture) as kUnseenPriority. Regions keep their progress; the reductions by level that they have
+  /// suffered are applied again.
   void setPriorities(std::span<const float> byId);
   /// The best job; ties go to the smaller id. Its region goes on with the same level at the same priority,
-  /// or, when the level is finished, with the next level at 0.9 of the priority (section 3: 10 % rule;
-  /// section 4.4). Nothing when no region is left or the queue is closed.
+  /// or, when the level is finished, with the next level and what inhibition leaves of the priority
+  /// (sections 3 and 4.4). Nothing when no region is left or the queue is closed.
   std::optional<Job> tryPop();
   /// Like tryPop, but waits for work; nothing only when closed.
   std::optional<Job> pop();
@@ -61,9 +65,15 @@ class RegionQueue {
   /// No job left to hand out for the present frame.
   bool exhausted() const;
 
-  static constexpr float kLevelReduction = 0.9f;
+  /// By id, up to the last object of the present frame: how many regions come up to and including the
+  /// object's own, as priorities stand now: 1 = its job is handed out next; 0 = not in the frame, or all of
+  /// it handed out.
+  std::vector<std::uint32_t> ranks() const;
+
+  static constexpr float kInhibition = 0.1f;
   static constexpr float kLowestPriority = 1e-6f;
-  static constexpr float kUnseenPriority = 1;  ///< of an object that no analysis has seen yet
+  static constexpr float kHighestPriority = 2;  ///< an order's 1, plus what a click adds
+  static constexpr float kUnseenPriority = 1;   ///< of an object that no analysis has seen yet
 
  private:
   struct Region {
@@ -78,6 +88,7 @@ class RegionQueue {
   std::optional<Job> popLocked();
 
   const int jobSize_;  ///< pixels, at least 1
+  const float kept_;   ///< of a priority when a level is done
   mutable std::mutex mutex_;
   std::condition_variable filled_;
   FramePtr frame_;

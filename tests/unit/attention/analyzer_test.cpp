@@ -72,6 +72,41 @@ TEST(Analyzer, TheSliderCountsFromTheNextAnalysis) {
   EXPECT_EQ(analyzer.attention(), 0);
 }
 
+TEST(Analyzer, WhatIsAttendedToComesFirstWhateverTheOrderAndDecays) {
+  for (const Order order : {Order::attention, Order::task, Order::random, Order::scanline, Order::largest}) {
+    double seconds = 100;
+    Analyzer analyzer({.order = order}, [&seconds] { return seconds; });
+    const AnalysisInput input = twoObjects(1);
+    const std::vector<float> before = analyzer.analyzeNow(input);
+    EXPECT_TRUE(analyzer.latest()->importance.attended.empty());
+    for (const std::uint32_t id : {1u, 2u}) {
+      analyzer.attend(id);
+      const std::vector<float> risen = analyzer.analyzeNow(input);
+      EXPECT_GT(risen[id], risen[3 - id]);
+      EXPECT_FLOAT_EQ(risen[id], before[id] + AttendedObjects::kHeight);
+      EXPECT_EQ(analyzer.latest()->importance.priority, risen);
+      EXPECT_EQ(analyzer.latest()->importance.attended[id], AttendedObjects::kHeight);
+      seconds += AttendedObjects::kHalfLifeSeconds;
+      EXPECT_FLOAT_EQ(analyzer.analyzeNow(input)[id], before[id] + AttendedObjects::kHeight / 2);
+      seconds += 1000;
+      EXPECT_EQ(analyzer.analyzeNow(input), before);
+    }
+  }
+}
+
+TEST(Analyzer, AttendingToWhatIsNotThereIsHarmless) {
+  Analyzer analyzer({.attention = 0}, [] { return 0.0; });
+  const AnalysisInput input = twoObjects(1);
+  const std::vector<float> before = analyzer.analyzeNow(input);
+  for (const std::uint32_t id : {0u, 3u, std::numeric_limits<std::uint32_t>::max()}) analyzer.attend(id);
+  EXPECT_EQ(analyzer.analyzeNow(input), before);
+  AnalysisInput outOfSight = input;
+  outOfSight.frame = tests::makeFrame(kSide, kSide, {{1, {2, 2, 22, 22}}}, 2);
+  analyzer.attend(2);
+  EXPECT_EQ(analyzer.analyzeNow(outOfSight)[2], 0.0f);
+  EXPECT_GT(analyzer.analyzeNow(input)[2], 1.0f) << "it comes into sight while it is attended to";
+}
+
 TEST(Analyzer, OtherOrdersLookAtNoPicture) {
   Analyzer analyzer({.order = Order::largest});
   AnalysisInput input = twoObjects(1);

@@ -148,6 +148,56 @@ TEST(RegionQueue, TenPercentRuleMakesEqualObjectsAlternateByLevel) {
   EXPECT_EQ(runs, expected);
 }
 
+TEST(RegionQueue, WithoutInhibitionTheWinnerTakesAll) {
+  const auto frame = frameOf(120, 80, randomMask(120, 80, 8, 2), 8);
+  const std::vector<float> priorities = randomPriorities(8, 77);
+  RegionQueue queue(16, 0);
+  queue.setPriorities(priorities);
+  queue.beginFrame(frame);
+  std::vector<std::uint32_t> ids;
+  for (const Job& job : drain(queue)) {
+    EXPECT_EQ(job.priority, priorities[job.id]) << "nothing is lost with a level";
+    if (ids.empty() || ids.back() != job.id) ids.push_back(job.id);
+  }
+  ASSERT_EQ(ids.size(), 8u) << "each is corrected in one go";
+  for (std::size_t i = 1; i < ids.size(); ++i) EXPECT_GE(priorities[ids[i - 1]], priorities[ids[i]]);
+}
+
+TEST(RegionQueue, FullInhibitionCoversAllBeforeAnySecondLevel) {
+  const auto frame = twoSquares();
+  RegionQueue queue(16, 1);
+  queue.setPriorities(std::vector<float>{0, 0.1f, 1.0f, 0.01f});
+  queue.beginFrame(frame);
+  bool secondLevel = false;
+  for (const Job& job : drain(queue)) {
+    const bool first = job.begin.level == frame->extents[job.id].startLevel;
+    EXPECT_FALSE(first && secondLevel);
+    secondLevel = secondLevel || !first;
+  }
+  EXPECT_TRUE(secondLevel);
+}
+
+TEST(RegionQueue, RanksSayWhoIsNext) {
+  RegionQueue queue(16);
+  EXPECT_TRUE(queue.ranks().empty());
+  const auto frame = frameOf(120, 80, randomMask(120, 80, 8, 2), 9);  // 9 is not visible
+  queue.setPriorities(randomPriorities(9, 77));
+  queue.beginFrame(frame);
+  using Ranks = std::vector<std::uint32_t>;
+  while (!queue.exhausted()) {
+    const Ranks ranks = queue.ranks();
+    ASSERT_EQ(ranks.size(), 10u);
+    EXPECT_EQ(ranks[0], 0u);
+    EXPECT_EQ(ranks[9], 0u);
+    EXPECT_EQ(ranks[queue.tryPop()->id], 1u);
+    Ranks left = ranks;
+    left.erase(std::remove(left.begin(), left.end(), 0u), left.end());
+    std::sort(left.begin(), left.end());
+    for (std::size_t i = 0; i < left.size(); ++i) ASSERT_EQ(left[i], i + 1) << "no rank twice, none left out";
+  }
+  EXPECT_EQ(queue.ranks(), Ranks(10, 0));
+}
+
 TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
   const auto frame = twoSquares();
   RegionQueue changed(32), untouched(32);
@@ -188,7 +238,7 @@ TEST(RegionQueue, StrangePrioritiesAreTamed) {
   queue.beginFrame(twoSquares());
   const auto jobs = drain(queue);
   EXPECT_EQ(jobs.front().id, 3u);
-  EXPECT_EQ(jobs.front().priority, 1.0f);
+  EXPECT_EQ(jobs.front().priority, RegionQueue::kHighestPriority);
   EXPECT_EQ(jobs[1].id, 1u);
   EXPECT_EQ(jobs[1].priority, RegionQueue::kLowestPriority);
 }
