@@ -132,6 +132,7 @@ XDriver::XDriver(const std::string& titleStart, pid_t process) {
   othersHandler = XSetErrorHandler(noteError);
   for (const auto end = std::chrono::steady_clock::now() + 60s; !state_->window;) {
     state_->window = findWindow(display, titleStart, process);
+    lastError.clear();  // other programs' windows come and go between two requests
     if (state_->window) break;
     if (std::chrono::steady_clock::now() > end) throw std::runtime_error("no window titled " + titleStart);
     std::this_thread::sleep_for(20ms);
