@@ -18,6 +18,7 @@ void addRenderCommand(CLI::App& program, Run& run);
 void addWalkCommand(CLI::App& program, Run& run);
 void addCompareCommand(CLI::App& program, Run& run);
 void addReplayCommand(CLI::App& program, Run& run);
+void addAttentionCommand(CLI::App& program, Run& run);
 
 /// Parses and runs; `further` are commands of rooms above this one. Prints errors as the command line
 /// promises. Returns the exit status: 0, 1 failed, 2 wrong usage.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <vector>
+
+#include "attention/separable.h"
 
 namespace saccade::attention {
 namespace {
@@ -104,42 +104,43 @@ struct Normaliser::Kernels {
   static constexpr double kInhibitionSigma = 0.25, kInhibition = 1.5;
   static constexpr float kGlobalInhibition = 0.02f;
 
-  int side = 0;
-  cv::Mat excite, inhibit;
-  cv::Mat excited, inhibited;
+  std::vector<float> excite, inhibit;  // taps
+  ImageGray alongX, excited, inhibited;
+  std::vector<float> padded;
 
   // A two-dimensional kernel c^2 / (2 pi sigma^2) exp(...) is c^2 times the product of two that sum to 1.
-  void prepare(int longerSide) {
-    if (side == longerSide) return;
-    side = longerSide;
-    const auto kernel = [&](double share) {
+  void prepare(const ImageGray& map) {
+    if (map.width() == alongX.width() && map.height() == alongX.height()) return;
+    const int longerSide = std::max(map.width(), map.height());
+    const auto taps = [&](double share) {
       const double sigma = std::max(share * longerSide, 0.3);
-      const int radius = std::max(1, std::min(static_cast<int>(std::ceil(3 * sigma)), longerSide - 1));
-      return cv::getGaussianKernel(2 * radius + 1, sigma, CV_32F);
+      return gaussianTaps(sigma,
+                          std::max(1, std::min(static_cast<int>(std::ceil(3 * sigma)), longerSide - 1)));
     };
-    excite = kernel(kExcitationSigma);
-    inhibit = kernel(kInhibitionSigma);
+    excite = taps(kExcitationSigma);
+    inhibit = taps(kInhibitionSigma);
+    alongX = excited = inhibited = ImageGray(map.width(), map.height());
+  }
+
+  void filter(const ImageGray& map, const std::vector<float>& taps, ImageGray& out) {
+    filterAlongX(map, taps, alongX, padded);
+    filterAlongY(alongX, taps, out);
   }
 
   void apply(ImageGray& map) {
-    cv::Mat m(map.height(), map.width(), CV_32F, map.pixels().data());
+    constexpr float kEx2 = kExcitation * kExcitation, kIn2 = kInhibition * kInhibition;
     for (int i = 0; i < kIterations; ++i) {
-      cv::sepFilter2D(m, excited, CV_32F, excite, excite, {-1, -1}, 0, cv::BORDER_REFLECT);
-      cv::sepFilter2D(m, inhibited, CV_32F, inhibit, inhibit, {-1, -1}, 0, cv::BORDER_REFLECT);
-      constexpr float kEx2 = kExcitation * kExcitation, kIn2 = kInhibition * kInhibition;
-      const auto* e = excited.ptr<float>();
-      const auto* in = inhibited.ptr<float>();
-      for (float& v : map.pixels()) {
-        v = std::max(v + kEx2 * *e++ - kIn2 * *in++ - kGlobalInhibition, 0.0f);
+      filter(map, excite, excited);
+      filter(map, inhibit, inhibited);
+      for (std::size_t p = 0; p < map.pixels().size(); ++p) {
+        float& v = map.pixels()[p];
+        v = std::max(v + kEx2 * excited.pixels()[p] - kIn2 * inhibited.pixels()[p] - kGlobalInhibition, 0.0f);
       }
     }
   }
 };
 
 Normaliser::Normaliser(Normalisation kind) : kind_(kind) {
-  // One thread: OpenCV's pool would compete with the tracers for the cores. The setting is the process's;
-  // nobody else uses OpenCV here.
-  cv::setNumThreads(1);
   if (kind == Normalisation::max) {
     peaks_ = std::make_unique<Peaks>();
   } else {
@@ -156,7 +157,7 @@ void Normaliser::operator()(ImageGray& map, float leastContrast) {
   if (kind_ == Normalisation::max) {
     promoteByPeaks(map);
   } else {
-    kernels_->prepare(std::max(map.width(), map.height()));
+    kernels_->prepare(map);
     kernels_->apply(map);
   }
 }

@@ -3,7 +3,15 @@
 // colour maps, each normalised, summed to two conspicuity maps at level 4, these normalised and summed with
 // equal weights.
 //
+// With the option `orientation` a third conspicuity map of 24 more feature maps (attention/orientation.h):
+// the six of an angle are summed and normalised before the angles are (Itti et al., equation 7).
+//
 // Departures, with their reasons:
+// - The map is smoothed by a Gaussian of kSmoothing of the image's longer side, the value that Harel, Koch
+// and Perona
+//   2006 publish with their program: eyes land about what draws them, not on it, and half a degree off is as
+//   good. Its border is a mirror; zeros beyond it would favour the middle, as photographers do, and score by
+//   that.
 // - Opponency as printed, |(R(c) - G(c)) - (G(s) - R(s))|, gives a constant red image a response, since
 // centre and
 //   surround add up. The sign is fixed: |(R - G)(c) - (R - G)(s)|, and B - Y alike. A constant image gives
@@ -21,6 +29,7 @@
 #include <vector>
 
 #include "attention/normalise.h"
+#include "attention/orientation.h"
 #include "attention/pyramid.h"
 #include "attention/resample.h"
 #include "core/image.h"
@@ -29,9 +38,10 @@ namespace saccade::attention {
 
 struct SaliencyOptions {
   Normalisation normalise = Normalisation::max;  ///< --normalise
+  bool orientation = false;                      ///< --orientation; off as in Haber 2001
 };
 
-/// Not thread safe: one owner. With Normalisation::max no allocation after the first image of a size.
+/// Not thread safe: one owner. No allocation after the first image of a size.
 class SaliencyModel {
  public:
   explicit SaliencyModel(const SaliencyOptions& options = {});
@@ -42,6 +52,7 @@ class SaliencyModel {
   const core::ImageGray& compute(const core::ImageRgba8& displayed);
 
   static constexpr int kLargestSide = 8192;
+  static constexpr double kSmoothing = 0.02;  ///< standard deviation over the image's longer side
 
  private:
   /// One centre-surround pair of levels.
@@ -50,7 +61,12 @@ class SaliencyModel {
     Resampler toCentre;
   };
   void prepare(int width, int height);
-  void addFeature(Pair& pair, Channel channel);
+  void prepareMaps(int firstCentre);
+  /// N(|centre - surround|) of two planes of the pair's levels, added to `sum` at mapLevel_.
+  void addFeature(Pair& pair, const core::ImageGray& centre, const core::ImageGray& surround,
+                  float leastContrast, core::ImageGray& sum);
+  void addColours();
+  void addOrientations();
   void combine();
 
   SaliencyOptions options_;
@@ -58,10 +74,13 @@ class SaliencyModel {
   std::vector<LevelGeometry> levels_;
   int mapLevel_ = 0;
   OpponentPyramid pyramid_;
+  OrientationPyramid orientations_;  ///< of no level while the option is off
   std::vector<Pair> pairs_;
-  std::vector<core::ImageGray> features_;       ///< by level 0..mapLevel_: scratch for one feature map
-  std::array<core::ImageGray, 2> conspicuity_;  ///< intensity, colour; at mapLevel_
-  std::vector<Resampler> toImage_;              ///< one, or none before the first image
+  std::vector<core::ImageGray> features_;     ///< by level 0..mapLevel_: scratch for one feature map
+  std::vector<core::ImageGray> conspicuity_;  ///< intensity, colour, perhaps orientation; at mapLevel_
+  core::ImageGray ofOneAngle_, smoothed_;     ///< scratch at mapLevel_
+  std::vector<float> smoothing_;              ///< taps
+  std::vector<Resampler> toImage_;            ///< one, or none before the first image
   std::vector<float> padded_;
   core::ImageGray result_;
 };

@@ -66,6 +66,7 @@ cv::Mat residualEnergy(const cv::Mat& grey) {
 core::ImageGray spectralResidual(const core::ImageRgba8& displayed) {
   core::ImageGray result(displayed.width(), displayed.height());
   if (displayed.empty()) return result;
+  cv::setNumThreads(1);  // OpenCV's pool would compete with the tracers for the cores
   const cv::Mat grey = greyOf(displayed);
   double least = 0, most = 0;
   cv::minMaxLoc(grey, &least, &most);

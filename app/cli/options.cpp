@@ -129,6 +129,26 @@ const std::map<std::string, AgingTest>& agingTests() {
   return kTests;
 }
 
+void addSaliencyOptions(CLI::App& command, attention::SaliencyOptions& o) {
+  const std::string group = "Saliency";
+  using attention::Normalisation;
+  static const std::map<std::string, Normalisation> kNormalisations{{"max", Normalisation::max},
+                                                                    {"dog", Normalisation::dog}};
+  command
+      .add_option(
+          "--normalise", o.normalise,
+          "How maps with few strong peaks are promoted: max (Itti, Koch and Niebur 1998) or dog (Itti "
+          "and Koch 2001: sparser, slower)")
+      ->transform(CLI::CheckedTransformer(kNormalisations))
+      ->option_text("NAME [max]")
+      ->group(group);
+  command
+      .add_flag("--orientation", o.orientation,
+                "Edges and lines of odd orientation are salient, too (Itti, Koch and Niebur 1998; Haber 2001 "
+                "leaves them out)")
+      ->group(group);
+}
+
 void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
   const std::string group = "Corrections";
   using attention::Order;
@@ -195,6 +215,7 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
                   "over the pixel's square)")
       ->check(CLI::Range(1, 1 << 20))
       ->group(group);
+  addSaliencyOptions(command, o.attention.saliency);
 }
 
 void addSizeOption(CLI::App& command, ImageSize& size) {

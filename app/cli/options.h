@@ -68,6 +68,8 @@ struct ImageSize {
 void addSceneOptions(CLI::App& command, SceneOptions& options);
 void addCameraOptions(CLI::App& command, CameraOptions& options);
 void addRunOptions(CLI::App& command, RunOptions& options);
+/// --normalise, --orientation; among addCorrectiveOptions', too.
+void addSaliencyOptions(CLI::App& command, attention::SaliencyOptions& options);
 void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& options);
 /// --size WxH; throws core::UsageError on anything else.
 void addSizeOption(CLI::App& command, ImageSize& size);

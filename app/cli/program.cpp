@@ -31,6 +31,7 @@ int runProgram(int argc, const char* const* argv, const std::vector<AddCommand>&
   addWalkCommand(program, run);
   addReplayCommand(program, run);
   addCompareCommand(program, run);
+  addAttentionCommand(program, run);
   for (const AddCommand add : further) add(program, run);
   try {
     program.parse(argc, argv);

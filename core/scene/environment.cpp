@@ -1,31 +1,15 @@
 #include "core/scene/environment.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 
-#include "core/atomic_file.h"
-#include "core/hdr_file.h"
-#include "core/image_io.h"
+#include "core/displayed_image.h"
 
 namespace saccade::core {
 namespace {
 
-/// By the first bytes: names lie.
-ImageRgb readRadiance(const std::filesystem::path& file, LoadBudget& budget) {
-  std::error_code failed;
-  if (!std::filesystem::exists(file, failed)) throw Error(file.string() + ": no such file (--environment)");
-  if (!std::filesystem::is_regular_file(file, failed)) throw Error(file.string() + ": not a regular file");
-  std::array<char, 4> head{};
-  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
-  if (head == std::array<char, 4>{0x76, 0x2f, 0x31, 0x01}) return readExr(file, budget);
-  if (head[0] == '#' && head[1] == '?') {
-    const std::vector<std::uint8_t> bytes = readWholeFile(file, budget);
-    ImageRgb image = decodeHdr(bytes, file.string(), budget);
-    budget.release(bytes.size());
-    return image;
-  }
+ImageRgb readPanorama(const std::filesystem::path& file, LoadBudget& budget) {
+  if (std::optional<ImageRgb> radiance = readRadiance(file, budget)) return std::move(*radiance);
   throw Error(file.string() + ": --environment takes an OpenEXR (.exr) or Radiance (.hdr) image");
 }
 
@@ -54,7 +38,7 @@ Environment readEnvironment(const std::filesystem::path& file, const Environment
     throw UsageError("--environment-rotation must be a number of degrees");
   Environment environment;
   environment.name = file.string();
-  environment.radiance = readRadiance(file, budget);
+  environment.radiance = readPanorama(file, budget);
   const int width = environment.radiance.width(), height = environment.radiance.height();
   if (std::int64_t{width} * height > kMaxEnvironmentPixels) {
     throw Error(file.string() + ": an environment of " + std::to_string(width) + " x " +

@@ -55,7 +55,7 @@ TEST(Cli, FailuresAreStatusOneAndOneLine) {
 TEST(Cli, HelpNamesEveryCommandAndEveryOptionHasText) {
   const Ran ran = saccade("--help");
   EXPECT_EQ(ran.status, 0);
-  for (const char* command : {"info", "bake", "render", "walk", "compare"}) {
+  for (const char* command : {"info", "bake", "render", "walk", "compare", "attention"}) {
     EXPECT_NE(ran.out.find(command), std::string::npos);
     const Ran help = saccade(std::string(command) + " --help");
     EXPECT_EQ(help.status, 0);

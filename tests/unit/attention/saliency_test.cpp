@@ -25,6 +25,11 @@ using tests::HardCase;
 using tests::paint;
 using tests::rgb;
 
+const std::vector<SaliencyOptions> kModels{{Normalisation::max, false},
+                                           {Normalisation::dog, false},
+                                           {Normalisation::max, true},
+                                           {Normalisation::dog, true}};
+
 const std::vector<std::pair<int, int>> kSizes{{1, 1},     {2, 1},     {16, 16},   {17, 33},   {64, 48},
                                               {128, 128}, {256, 255}, {333, 257}, {512, 512}, {16, 1000}};
 
@@ -45,8 +50,8 @@ TEST(Saliency, Hard26ConstantImagesOfAnyColourGiveExactlyZero) {
   const std::vector<Rgba8> colours{rgb(0, 0, 0),     rgb(255, 255, 255), rgb(255, 0, 0),  rgb(0, 255, 0),
                                    rgb(0, 0, 255),   rgb(255, 255, 0),   rgb(1, 0, 0),    rgb(128, 127, 126),
                                    rgb(37, 211, 89), rgb(251, 3, 177),   rgb(13, 17, 254)};
-  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
-    SaliencyModel model({kind});
+  for (const SaliencyOptions& kind : kModels) {
+    SaliencyModel model(kind);
     for (const auto& [width, height] : kSizes) {
       for (const Rgba8& colour : colours) {
         const ImageRgba8 image(width, height, colour);
@@ -73,14 +78,14 @@ TEST(Saliency, Hard26RadianceOfNanAndAMillionGivesASoundMap) {
   HardCase unsound =
       HardCase::counting("saliency outside [0, 1] for radiance of NaN, 1e6, -1e6 and infinity", "pixels");
   HardCase constant("saliency of pictures all NaN or all 1e6");
-  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
-    const ImageGray map = saliencyOf(core::toDisplay(radiance, 0), {kind});
+  for (const SaliencyOptions& kind : kModels) {
+    const ImageGray map = saliencyOf(core::toDisplay(radiance, 0), kind);
     int wrong = 0;
     for (const float v : map.pixels()) wrong += !(v >= 0 && v <= 1);
     EXPECT_TRUE(unsound.within(wrong, 0));
     for (const float value : {std::nanf(""), 1e6f}) {
       const ImageRgba8 all = core::toDisplay(core::ImageRgb(kSide, kSide, core::Vec3(value)), 0);
-      EXPECT_TRUE(constant.within(largestValue(saliencyOf(all, {kind})), 0)) << value;
+      EXPECT_TRUE(constant.within(largestValue(saliencyOf(all, kind)), 0)) << value;
     }
   }
 }
@@ -188,14 +193,14 @@ float largestDifference(const ImageGray& a, const ImageGray& b) {
 // Halving and interpolation are symmetric, so only rounding is left: no shift towards a corner at any size.
 TEST(Saliency, FollowsMirrorAndQuarterTurn) {
   constexpr float kRounding = 1e-3f;
-  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
+  for (const SaliencyOptions& kind : kModels) {
     for (const auto& [width, height] :
          std::vector<std::pair<int, int>>{{16, 16}, {17, 33}, {96, 64}, {101, 67}, {256, 256}, {333, 250}}) {
       const ImageRgba8 image = tests::randomDiscs(width, height, 12, 77);
-      const ImageGray map = saliencyOf(image, {kind});
-      EXPECT_LE(largestDifference(saliencyOf(mirrored(image), {kind}), mirrored(map)), kRounding)
+      const ImageGray map = saliencyOf(image, kind);
+      EXPECT_LE(largestDifference(saliencyOf(mirrored(image), kind), mirrored(map)), kRounding)
           << sizeName(image);
-      EXPECT_LE(largestDifference(saliencyOf(turned(image), {kind}), turned(map)), kRounding)
+      EXPECT_LE(largestDifference(saliencyOf(turned(image), kind), turned(map)), kRounding)
           << sizeName(image);
     }
   }
@@ -214,10 +219,10 @@ TEST(Saliency, HalvingAllValuesChangesLittle) {
 }
 
 TEST(Saliency, LiesBetweenZeroAndOneAndReachesTheTop) {
-  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
+  for (const SaliencyOptions& kind : kModels) {
     for (const auto& [width, height] : kSizes) {
       const ImageRgba8 image = tests::randomDiscs(width, height, 10, 11);
-      const ImageGray map = saliencyOf(image, {kind});
+      const ImageGray map = saliencyOf(image, kind);
       ASSERT_EQ(map.width(), width);
       ASSERT_EQ(map.height(), height);
       const auto [least, most] = std::minmax_element(map.pixels().begin(), map.pixels().end());
@@ -232,9 +237,9 @@ TEST(Saliency, LiesBetweenZeroAndOneAndReachesTheTop) {
 
 TEST(Saliency, DoesNotDependOnWhatTheModelSawBefore) {
   const ImageRgba8 image = tests::randomDiscs(300, 200, 10, 21);
-  for (const Normalisation kind : {Normalisation::max, Normalisation::dog}) {
-    const ImageGray fresh = saliencyOf(image, {kind});
-    SaliencyModel model({kind});
+  for (const SaliencyOptions& kind : kModels) {
+    const ImageGray fresh = saliencyOf(image, kind);
+    SaliencyModel model(kind);
     model.compute(tests::randomDiscs(300, 200, 10, 22));
     EXPECT_EQ(model.compute(image).pixels(), fresh.pixels());
     model.compute(tests::randomDiscs(64, 500, 10, 23));
