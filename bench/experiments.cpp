@@ -1,4 +1,5 @@
 // The list of experiments: one line each, in the order in which they run.
+#include "bench/attention/attention.h"
 #include "bench/cache/cache.h"
 #include "bench/growth/growth.h"
 #include "bench/hard/hard.h"
@@ -39,6 +40,10 @@ const std::vector<Experiment>& allExperiments() {
        "How much of bare Embree's speed is left in the corrective loop?",
        {Suite::quick},
        &measureRays},
+      {"attention",
+       "What does the saliency model cost, beside plain OpenCV, and does it foretell where people look?",
+       {},
+       &measureAttention},
       {"load", "What takes the time from a file to its first frame?", {}, &measureLoad},
       {"many-lights",
        "What does a light sample among many lamps cost, and how far off is it?",

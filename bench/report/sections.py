@@ -124,6 +124,9 @@ SECTIONS: dict[str, Section] = {
         "What does a light sample cost, and how noisy is it, among many lamps?",
         partial(growth, x_units={"": "lamps"}),
     ),
+    "attention": Section(
+        "The saliency model", "What does it cost beside plain OpenCV, and does it foretell where people look?", plain
+    ),
     "load": Section(
         "From file to first frame", "Seconds and bytes until the first picture, beside a bare parse of the file.", plain
     ),
