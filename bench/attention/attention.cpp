@@ -121,7 +121,7 @@ void drawMaps(Session& session, const core::ImageRgba8& picture) {
   put(0, [&](int x, int y) { return picture.at(x, y); });
   int place = 1;
   for (const bool orientation : {false, true}) {
-    const core::ImageGray map = saliencyOf(picture, {Normalisation::max, orientation});
+    const core::ImageGray map = attention::saliencyOf(picture, {Normalisation::max, orientation});
     put(place++, [&](int x, int y) {
       const auto code = static_cast<std::uint8_t>(255 * map.at(x, y) + 0.5f);
       return core::Rgba8{code, code, code, 255};

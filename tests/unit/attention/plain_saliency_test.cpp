@@ -41,10 +41,9 @@ TEST(PlainSaliency, IsTheSameMapUpToThePyramidsShift) {
   RecordProperty("least_correlation", std::to_string(least));
 }
 
-TEST(PlainSaliency, ConstantImagesGiveZeroAndSmallOnesAreRefused) {
-  const core::ImageGray map = plainSaliency(core::ImageRgba8(256, 300, tests::rgb(37, 211, 89)));
-  for (const float v : map.pixels()) ASSERT_EQ(v, 0);
+TEST(PlainSaliency, SmallImagesAreRefused) {
   EXPECT_THROW(plainSaliency(core::ImageRgba8(255, 300)), core::Error);
+  EXPECT_EQ(plainSaliency(core::ImageRgba8(256, 300)).height(), 300);
 }
 
 }  // namespace
