@@ -6,12 +6,25 @@
 
 namespace saccade::core {
 
-std::filesystem::path cacheFolder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
+namespace {
+
+/// After the XDG Base Directory Specification: a variable that is no absolute path is ignored.
+std::filesystem::path folderBy(const char* variable, const char* underHome, const std::string& what) {
+  const char* base = std::getenv(variable);
   const char* home = std::getenv("HOME");
-  if (cache != nullptr && *cache == '/') return std::filesystem::path(cache) / "saccade";
-  if (home != nullptr && *home != '\0') return std::filesystem::path(home) / ".cache" / "saccade";
-  throw Error("no place to keep illumination maps and references: set XDG_CACHE_HOME or HOME");
+  if (base != nullptr && *base == '/') return std::filesystem::path(base) / "saccade";
+  if (home != nullptr && *home != '\0') return std::filesystem::path(home) / underHome / "saccade";
+  throw Error("no place to keep " + what + ": set " + variable + " or HOME");
+}
+
+}  // namespace
+
+std::filesystem::path cacheFolder() {
+  return folderBy("XDG_CACHE_HOME", ".cache", "illumination maps and references");
+}
+
+std::filesystem::path configFolder() {
+  return folderBy("XDG_CONFIG_HOME", ".config", "settings and bookmarks");
 }
 
 std::string cacheName(std::uint64_t key) {

@@ -1,4 +1,5 @@
-// Where what was computed once is kept: illumination maps, references. Any thread.
+// Where files of the program's own are kept: what was computed once (illumination maps, references), and what
+// a person set. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,9 @@ namespace saccade::core {
 /// $XDG_CACHE_HOME/saccade, or ~/.cache/saccade; it may not exist yet. Throws core::Error where neither
 /// variable names a place.
 std::filesystem::path cacheFolder();
+
+/// $XDG_CONFIG_HOME/saccade, or ~/.config/saccade; likewise.
+std::filesystem::path configFolder();
 
 /// 16 hexadecimal digits: the name of the file of this key, without its extension.
 std::string cacheName(std::uint64_t key);

@@ -58,11 +58,11 @@ void writeLinear(const RenderOptions& o, const core::ImageRgb& linear) {
 
 void writeAov(const RenderOptions& o, const FrameLoop& loop) {
   const Aov aov = aovByName(o.aov);
-  const core::ImageGray values = aovValues(aov, loop);
+  const AovImage image = aovImage(aov, loop);
   if (wantsExr(o)) {
-    core::writeExrChannels(o.output, {{"Y", &values}});
+    core::writeExrChannels(o.output, {{"Y", &image.values}});
   } else {
-    core::writePng(o.output, aovPicture(aov, values, o.corrective.maxAge));
+    core::writePng(o.output, aovPicture(image, {aov, image.values, o.corrective.maxAge}));
   }
 }
 
@@ -193,7 +193,7 @@ void addRenderCommand(CLI::App& program, Run& run) {
                       "corrective: the first N samples of the schedule, on any number of threads");
   command->add_flag("--converge", o->converge,
                     "corrective: until every non-diffuse pixel is exact (the default)");
-  command->add_option("--aov", o->aov, "Write this instead of the picture: id, saliency, level, thread, age");
+  command->add_option("--aov", o->aov, "Write this instead of the picture: " + aovList());
   command->add_option("--bounces", o->bounces, "path: longest path in bounces")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

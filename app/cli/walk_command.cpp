@@ -159,8 +159,7 @@ void addWalkCommand(CLI::App& program, Run& run) {
                       "Window: write what it shows when it closes, panel included");
   command->add_option("--exit-after", o->exitAfterSeconds, "Window: close after so many seconds")
       ->check(CLI::PositiveNumber);
-  command->add_option("--overlay", o->overlay,
-                      "Window: overlay to start with: id, saliency, level, thread, age");
+  command->add_option("--overlay", o->overlay, "Window: overlay to start with: " + aovList());
   addCameraOptions(*command, o->camera);
   addCorrectiveOptions(*command, o->corrective);
   addRunOptions(*command, o->run);

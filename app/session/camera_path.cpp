@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 
 namespace saccade::app {
@@ -91,8 +92,7 @@ CameraPath CameraPath::read(const std::filesystem::path& file) {
     if (i > 0 && keys[i].seconds <= keys[i - 1].seconds)
       fail(file, i, "t must be later than that of the key before");
   }
-  const double begin = keys.front().seconds, end = keys.back().seconds;
-  return {std::move(keys), begin, end};
+  return through(std::move(keys));
 }
 
 CameraPath CameraPath::orbit(const core::Camera& camera, double periodSeconds) {
@@ -109,6 +109,19 @@ CameraPath CameraPath::orbit(const core::Camera& camera, double periodSeconds) {
     keys.push_back(key);
   }
   return {std::move(keys), 0, periodSeconds};
+}
+
+CameraPath CameraPath::through(std::vector<CameraKey> keys) {
+  const double begin = keys.front().seconds, end = keys.back().seconds;
+  return {std::move(keys), begin, end};
+}
+
+std::vector<CameraKey> CameraPath::keys() const {
+  std::vector<CameraKey> inside;
+  for (const CameraKey& key : keys_) {
+    if (key.seconds >= begin_ && key.seconds <= end_) inside.push_back(key);
+  }
+  return inside;
 }
 
 CameraPath CameraPath::still(const core::Camera& camera) { return {{{0, camera}}, 0, 0}; }
@@ -128,6 +141,64 @@ core::Camera CameraPath::at(double seconds) const {
   camera.fovYDegrees =
       std::clamp(interpolate(keys_, i, s, [](const core::Camera& c) { return c.fovYDegrees; }), 0.1f, 179.9f);
   return camera;
+}
+
+void writeCameraPath(const std::filesystem::path& file, const std::vector<CameraKey>& keys) {
+  Json root = Json::array();
+  const auto list = [](const core::Vec3& v) { return Json{v.x, v.y, v.z}; };
+  for (const CameraKey& key : keys) {
+    const core::Camera& c = key.camera;
+    root.push_back({{"t", key.seconds}, {"eye", list(c.eye)}, {"at", list(c.at)}, {"up", list(c.up)}});
+    root.back()["fov"] = c.fovYDegrees;
+  }
+  std::string text = "[\n";
+  for (const Json& key : root) text += (&key == &root.front() ? "" : ",\n") + key.dump();
+  text += "\n]\n";
+  core::writeFileAtomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+bool within(const PathTolerance& tolerance, const core::Camera& a, const core::Camera& b) {
+  const core::Vec3 ahead = glm::normalize(a.at - a.eye), other = glm::normalize(b.at - b.eye);
+  const float chord = 2 * std::sin(0.5f * tolerance.radians);
+  return glm::length(a.eye - b.eye) <= tolerance.eyeMetres && glm::length(ahead - other) <= chord &&
+         std::abs(a.fovYDegrees - b.fovYDegrees) <= tolerance.fovDegrees;
+}
+
+namespace {
+
+/// Of the recorded keys between two that are kept, the middle one of those beyond the tolerance; `from` where
+/// there is none. A middle one halves the work that is left, wherever the path strays most.
+std::size_t middleBeyond(const std::vector<CameraKey>& recorded, const CameraPath& path,
+                         const PathTolerance& tolerance, std::size_t from, std::size_t to) {
+  std::vector<std::size_t> beyond;
+  for (std::size_t i = from + 1; i < to; ++i) {
+    if (!within(tolerance, path.at(recorded[i].seconds), recorded[i].camera)) beyond.push_back(i);
+  }
+  return beyond.empty() ? from : beyond[beyond.size() / 2];
+}
+
+}  // namespace
+
+std::vector<CameraKey> thinned(const std::vector<CameraKey>& recorded, const PathTolerance& tolerance) {
+  if (recorded.size() < 3) return recorded;
+  std::vector<std::size_t> kept{0, recorded.size() - 1};
+  for (std::size_t before = 0; before != kept.size();) {
+    before = kept.size();
+    std::vector<CameraKey> keys;
+    for (const std::size_t i : kept) keys.push_back(recorded[i]);
+    const CameraPath path = CameraPath::through(keys);
+    std::vector<std::size_t> more;
+    for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
+      more.push_back(kept[k]);
+      const std::size_t middle = middleBeyond(recorded, path, tolerance, kept[k], kept[k + 1]);
+      if (middle != kept[k]) more.push_back(middle);
+    }
+    more.push_back(kept.back());
+    kept = std::move(more);
+  }
+  std::vector<CameraKey> keys;
+  for (const std::size_t i : kept) keys.push_back(recorded[i]);
+  return keys;
 }
 
 }  // namespace saccade::app

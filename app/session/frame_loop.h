@@ -106,6 +106,7 @@ class FrameLoop {
   }
   /// What is corrected next, by id: RegionQueue::ranks. Importance is analyzer().latest()'s.
   std::vector<std::uint32_t> ranks() const { return regions_.ranks(); }
+  const PictureSettings& settings() const { return picture_.settings(); }
   void setExposure(float ev) { picture_.settings().exposureEv = ev; }
   void setDelta(float delta) { picture_.settings().delta = delta; }
   /// Off: the base layer alone is shown; samples go on being traced.

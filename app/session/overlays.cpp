@@ -1,6 +1,9 @@
 #include "app/session/overlays.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
 
 #include "core/error.h"
 #include "core/metrics/colormap.h"
@@ -8,20 +11,27 @@
 namespace saccade::app {
 
 const std::vector<std::string>& aovNames() {
-  static const std::vector<std::string> names{"id", "saliency", "level", "thread", "age"};
+  static const std::vector<std::string> names{"id",  "saliency", "level",     "thread",
+                                              "age", "validity", "footprint", "importance"};
   return names;
+}
+
+std::string aovList() {
+  std::string list;
+  for (const std::string& name : aovNames()) list += (list.empty() ? "" : ", ") + name;
+  return list;
 }
 
 Aov aovByName(const std::string& name) {
   const auto& names = aovNames();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<Aov>(found - names.begin());
-  std::string known;
-  for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-  throw core::UsageError("no overlay '" + name + "'; there are: " + known);
+  throw core::UsageError("no overlay '" + name + "'; there are: " + aovList());
 }
 
 namespace {
+
+using Splat = render::CorrectionLayer::Splat;
 
 core::ImageGray saliencyValues(const FrameLoop& loop) {
   const auto analysis = loop.analyzer().latest();
@@ -34,59 +44,258 @@ core::ImageGray saliencyValues(const FrameLoop& loop) {
   return analysis->saliency;
 }
 
-float shownValue(Aov aov, const render::CorrectionLayer::Splat* splat) {
-  switch (aov) {
-    case Aov::level:
-      return splat ? splat->level : 0;
-    case Aov::thread:
-      return splat ? static_cast<float>(splat->thread + 1) : 0;
-    default:
-      return splat ? splat->ageFrames : -1;
+/// Cached samples that would fail the aging test if they were judged alone.
+class StaleSamples {
+ public:
+  explicit StaleSamples(const FrameLoop& loop) {
+    const core::FrameSnapshot& frame = loop.frame();
+    const PictureSettings& settings = loop.settings();
+    const core::Vec3& eye = frame.view.camera().eye;
+    loop.cache().forEach([&](const core::Sample& s, std::uint64_t age) {
+      if (age >= frame.epoch) return;
+      if (!(render::agedChange(settings.aging, s, eye) <= settings.delta))
+        keys_.insert(key(frame.epoch - age, s.x, s.y));
+    });
   }
-}
+  bool contains(const Splat& s) const { return keys_.count(key(s.ageFrames, s.x, s.y)) > 0; }
 
-}  // namespace
+ private:
+  /// A pixel is traced once for a camera.
+  static std::uint64_t key(std::uint64_t ageFrames, std::int32_t x, std::int32_t y) {
+    return ageFrames << 32 | static_cast<std::uint64_t>(y) << 16 | static_cast<std::uint64_t>(x);
+  }
+  std::unordered_set<std::uint64_t> keys_;
+};
 
-core::ImageGray aovValues(Aov aov, const FrameLoop& loop) {
-  if (aov == Aov::saliency) return saliencyValues(loop);
-  const core::FrameSnapshot& frame = loop.frame();
+template <class ValueAt>
+core::ImageGray valuesBy(const core::FrameSnapshot& frame, ValueAt&& valueAt) {
   core::ImageGray values(frame.view.width(), frame.view.height());
   for (int y = 0; y < values.height(); ++y) {
-    for (int x = 0; x < values.width(); ++x) {
-      values.at(x, y) =
-          aov == Aov::id ? static_cast<float>(frame.idAt(x, y)) : shownValue(aov, loop.layer().shownAt(x, y));
-    }
+    for (int x = 0; x < values.width(); ++x) values.at(x, y) = valueAt(x, y);
   }
   return values;
 }
 
-core::ImageRgba8 aovPicture(Aov aov, const core::ImageGray& values, int maxAge) {
-  const auto color = [&](float value) -> core::Rgba8 {
-    if (aov == Aov::saliency) return core::rampColor(value);
-    if (aov == Aov::age) {
-      return value < 0 ? core::Rgba8{} : core::rampColor(1 - value / static_cast<float>(std::max(1, maxAge)));
-    }
-    return value <= 0 ? core::Rgba8{} : core::paletteColor(static_cast<std::uint32_t>(value));
+/// of(splat) where a sample is shown, else `none`.
+template <class Of>
+core::ImageGray splatValues(const FrameLoop& loop, float none, Of&& of) {
+  return valuesBy(loop.frame(), [&](int x, int y) {
+    const Splat* splat = loop.layer().shownAt(x, y);
+    return splat ? of(*splat) : none;
+  });
+}
+
+core::ImageGray validityValues(const FrameLoop& loop) {
+  const StaleSamples stale(loop);
+  const auto validity = [&](int x, int y) {
+    const Splat* splat = loop.layer().shownAt(x, y);
+    if (!splat) return Validity::none;
+    if (loop.layer().isExact(x, y)) return Validity::exact;
+    if (splat->ageFrames == 0) return Validity::coarse;
+    return stale.contains(*splat) ? Validity::stale : Validity::valid;
   };
-  core::ImageRgba8 picture(values.width(), values.height());
-  std::transform(values.pixels().begin(), values.pixels().end(), picture.pixels().begin(), color);
+  return valuesBy(loop.frame(), [&](int x, int y) { return static_cast<float>(validity(x, y)); });
+}
+
+core::ImageGray byObject(const core::FrameSnapshot& frame, const std::vector<float>& byId) {
+  return valuesBy(frame, [&](int x, int y) {
+    const std::uint32_t id = frame.idAt(x, y);
+    return id > 0 && id < byId.size() ? byId[id] : 0;
+  });
+}
+
+core::ImageGray importanceValues(const FrameLoop& loop) {
+  const auto analysis = loop.analyzer().latest();
+  return byObject(loop.frame(), analysis ? analysis->importance.priority : std::vector<float>{});
+}
+
+core::ImageGray values(Aov aov, const FrameLoop& loop) {
+  switch (aov) {
+    case Aov::id:
+      return valuesBy(loop.frame(),
+                      [&](int x, int y) { return static_cast<float>(loop.frame().idAt(x, y)); });
+    case Aov::saliency:
+      return saliencyValues(loop);
+    case Aov::level:
+      return splatValues(loop, 0, [](const Splat& s) { return static_cast<float>(s.level); });
+    case Aov::thread:
+      return splatValues(loop, 0, [](const Splat& s) { return static_cast<float>(s.thread + 1); });
+    case Aov::age:
+      return splatValues(loop, -1, [](const Splat& s) { return static_cast<float>(s.ageFrames); });
+    case Aov::validity:
+      return validityValues(loop);
+    case Aov::footprint:
+      return splatValues(loop, 0, [](const Splat& s) { return static_cast<float>(s.footprint); });
+    case Aov::importance:
+      return importanceValues(loop);
+  }
+  return {};
+}
+
+std::vector<std::uint8_t> splatEdges(const render::CorrectionLayer& layer) {
+  const int width = layer.width(), height = layer.height();
+  std::vector<std::uint8_t> edges;
+  edges.reserve(static_cast<std::size_t>(width) * height);
+  for (int y = 0; y < height; ++y) {
+    const Splat* here = layer.shownAt(0, y);
+    for (int x = 0; x < width; ++x) {
+      const Splat* right = x + 1 < width ? layer.shownAt(x + 1, y) : here;
+      const Splat* below = y + 1 < height ? layer.shownAt(x, y + 1) : here;
+      edges.push_back(here != nullptr && (right != here || below != here));
+      here = right;
+    }
+  }
+  return edges;
+}
+
+struct ValidityLook {
+  core::Rgba8 color;
+  const char* label;
+};
+constexpr std::array<ValidityLook, 5> kValidity{{{{0, 0, 0, 255}, "no sample"},
+                                                 {{70, 190, 90, 255}, "exact: traced for this pixel"},
+                                                 {{70, 140, 255, 255}, "coarse: traced beside it"},
+                                                 {{255, 205, 70, 255}, "older camera, within delta"},
+                                                 {{225, 60, 50, 255}, "older camera, beyond delta"}}};
+
+std::string number(float value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", static_cast<double>(value));
+  return text;
+}
+
+const char* meaningOf(Aov aov) {
+  switch (aov) {
+    case Aov::id:
+      return "Non-diffuse objects: what is corrected";
+    case Aov::saliency:
+      return "Saliency: where the eye is drawn";
+    case Aov::level:
+      return "Lattice level of the sample shown";
+    case Aov::thread:
+      return "Tracer that made the sample shown";
+    case Aov::age:
+      return "Camera changes since the sample was traced";
+    case Aov::validity:
+      return "What the sample shown is worth";
+    case Aov::footprint:
+      return "Side of the sample's splat; lines part the splats";
+    case Aov::importance:
+      return "Importance: saliency and task as the slider mixes them";
+  }
+  return "";
+}
+
+std::string labelOf(Aov aov, std::uint32_t value, const core::Scene& scene) {
+  if (aov == Aov::validity) return kValidity[value].label;
+  if (aov == Aov::thread) return "tracer " + std::to_string(value);
+  if (aov == Aov::level)
+    return "level " + std::to_string(value) + ": one pixel in " +
+           std::to_string(core::Lattice::step(static_cast<int>(value)));
+  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const core::Object& o) { return o.id == value; });
+  const std::string name = object == scene.objects.end() ? "" : object->name;
+  return std::to_string(value) + (name.empty() ? "" : " " + name);
+}
+
+/// Pixels by value, [0] left out.
+std::vector<std::uint32_t> countsOf(const core::ImageGray& values) {
+  std::vector<std::uint32_t> counts(1);
+  for (const float value : values.pixels()) {
+    const auto index = static_cast<std::size_t>(std::max(value, 0.0f));
+    if (index >= counts.size()) counts.resize(index + 1);
+    ++counts[index];
+  }
+  counts[0] = 0;
+  return counts;
+}
+
+}  // namespace
+
+AovImage aovImage(Aov aov, const FrameLoop& loop) {
+  AovImage image{values(aov, loop), {}};
+  if (aov == Aov::footprint) image.edges = splatEdges(loop.layer());
+  return image;
+}
+
+AovScale::AovScale(Aov aov, const core::ImageGray& values, int maxAge) : aov_(aov) {
+  const auto largest = [&] {
+    const auto found = std::max_element(values.pixels().begin(), values.pixels().end());
+    return found == values.pixels().end() ? 0.0f : *found;
+  };
+  constexpr float kLeast = 1e-12f;
+  if (aov == Aov::saliency) ramp_ = {0, 1, "0", "1", false, 0, 1, 0};
+  if (aov == Aov::age) {
+    const float oldest = static_cast<float>(std::max(1, maxAge));
+    ramp_ = {oldest, 0, number(oldest), "0: this camera"};
+  }
+  if (aov == Aov::footprint) {
+    const auto side = static_cast<float>(render::CorrectionLayer::kMaxFootprint);
+    ramp_ = {side, 1, number(side) + " px", "1 px", true, kVisible, 1, kLeast};
+  }
+  if (aov == Aov::importance) {
+    const float high = std::max(1.0f, largest());
+    ramp_ = {0, high, "0", number(high), false, kVisible, 1, kLeast};
+  }
+}
+
+core::Rgba8 AovScale::color(float value) const {
+  if (aov_ == Aov::validity) return kValidity[static_cast<std::size_t>(value)].color;
+  if (!ramp_) return value <= 0 ? core::Rgba8{} : core::paletteColor(static_cast<std::uint32_t>(value));
+  if (!(value >= ramp_->leastValue)) return {};
+  const auto scaled = [this](float v) { return ramp_->logarithmic ? std::log(v) : v; };
+  const float low = scaled(ramp_->low), place = (scaled(value) - low) / (scaled(ramp_->high) - low);
+  const float inside = std::clamp(place, 0.0f, 1.0f);
+  return core::rampColor(ramp_->firstColor + (ramp_->lastColor - ramp_->firstColor) * inside);
+}
+
+core::ImageRgba8 aovPicture(const AovImage& image, const AovScale& scale) {
+  core::ImageRgba8 picture(image.values.width(), image.values.height());
+  const auto color = [&](float value) { return scale.color(value); };
+  std::transform(image.values.pixels().begin(), image.values.pixels().end(), picture.pixels().begin(), color);
+  for (std::size_t i = 0; i < image.edges.size(); ++i) {
+    if (image.edges[i] == 0) continue;
+    core::Rgba8& p = picture.pixels()[i];
+    p = {static_cast<std::uint8_t>(p.r / 2), static_cast<std::uint8_t>(p.g / 2),
+         static_cast<std::uint8_t>(p.b / 2), p.a};
+  }
   return picture;
 }
 
-const char* aovLegend(Aov aov) {
-  switch (aov) {
-    case Aov::id:
-      return "a colour for each non-diffuse object; black = diffuse";
-    case Aov::saliency:
-      return "bright = salient";
-    case Aov::level:
-      return "lattice level shown, 1 (coarse) to 7 (every pixel); black = not corrected";
-    case Aov::thread:
-      return "a colour for each tracer thread; black = not corrected";
-    case Aov::age:
-      return "bright = traced for this frame, dark = old; black = no sample";
+void layOver(const core::ImageRgba8& overlay, float strength, core::ImageRgba8& picture) {
+  const int weight = static_cast<int>(std::lround(256 * strength));
+  const auto mix = [weight](std::uint8_t over, std::uint8_t under) {
+    return static_cast<std::uint8_t>((weight * over + (256 - weight) * under + 128) / 256);
+  };
+  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
+    const core::Rgba8& o = overlay.pixels()[i];
+    core::Rgba8& p = picture.pixels()[i];
+    p = {mix(o.r, p.r), mix(o.g, p.g), mix(o.b, p.b), p.a};
   }
-  return "";
+}
+
+AovLegend aovLegend(const AovScale& scale, const core::ImageGray& values, const core::Scene& scene) {
+  AovLegend legend{meaningOf(scale.aov()), "diffuse, or no sample", scale.ramp(), {}, 0};
+  if (scale.aov() == Aov::saliency) legend.black = "";
+  if (scale.aov() == Aov::id || scale.aov() == Aov::importance) legend.black = "diffuse";
+  if (scale.ramp()) return legend;
+  const std::vector<std::uint32_t> counts = countsOf(values);
+  std::vector<std::uint32_t> present;
+  for (std::uint32_t value = 1; value < counts.size(); ++value) {
+    if (counts[value] > 0) present.push_back(value);
+  }
+  if (present.size() > AovLegend::kMostSwatches) {
+    legend.leftOut = present.size() - AovLegend::kMostSwatches;
+    std::stable_sort(present.begin(), present.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return counts[a] > counts[b]; });
+    present.resize(AovLegend::kMostSwatches);
+    std::sort(present.begin(), present.end());
+  }
+  for (const std::uint32_t value : present) {
+    const auto exact = static_cast<float>(value);
+    legend.swatches.push_back({exact, scale.color(exact), labelOf(scale.aov(), value, scene)});
+  }
+  return legend;
 }
 
 }  // namespace saccade::app

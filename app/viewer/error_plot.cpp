@@ -11,10 +11,11 @@ namespace saccade::app {
 
 namespace {
 
-constexpr float kHeight = 150;     // pixels, labels included
-constexpr float kLabelWidth = 42;  // six characters
-constexpr float kLabelHeight = 16;
-constexpr float kZeroHeight = 20;  // the row for exactly 0, above the labels
+// Multiples of the font's size:
+constexpr float kHeight = 11.5f;      // labels included
+constexpr float kLabelWidth = 3.25f;  // six characters
+constexpr float kLabelHeight = 1.25f;
+constexpr float kZeroHeight = 1.5f;  // the row for exactly 0, above the labels
 constexpr std::size_t kTicksAcross = 5, kTicksUp = 5;
 constexpr ImU32 kFrameColor = IM_COL32(110, 110, 120, 255);
 constexpr ImU32 kGridColor = IM_COL32(60, 60, 66, 255);
@@ -41,7 +42,7 @@ struct Plot {
 
   ImVec2 at(double s, double e) const {
     const auto x = static_cast<float>(seconds.at(s)), y = static_cast<float>(error.at(e));
-    const float zeroRow = bottomRight.y + kZeroHeight / 2;
+    const float zeroRow = bottomRight.y + kZeroHeight * ImGui::GetFontSize() / 2;
     return {topLeft.x + x * (bottomRight.x - topLeft.x),
             e > 0 ? bottomRight.y - y * (bottomRight.y - topLeft.y) : zeroRow};
   }
@@ -53,20 +54,22 @@ Plot plotOf(const std::vector<ErrorPoint>& points, ImVec2 corner, float width) {
     seconds.push_back(p.seconds);
     errors.insert(errors.end(), {p.relmse, p.flip});
   }
-  return {{corner.x + kLabelWidth, corner.y + 4},
-          {corner.x + width - 8, corner.y + kHeight - kLabelHeight - kZeroHeight},
+  const float em = ImGui::GetFontSize();
+  return {{corner.x + kLabelWidth * em, corner.y + 0.3f * em},
+          {corner.x + width - 0.6f * em, corner.y + (kHeight - kLabelHeight - kZeroHeight) * em},
           axisAround(seconds),
           axisAround(errors)};
 }
 
 void drawAxes(ImDrawList& list, const Plot& plot) {
-  const float bottom = plot.bottomRight.y + kZeroHeight;
+  const float em = ImGui::GetFontSize();
+  const float bottom = plot.bottomRight.y + kZeroHeight * em;
   for (const double tick : plot.error.ticks(kTicksUp)) {
     const float y = plot.at(plot.seconds.low, tick).y;
     list.AddLine({plot.topLeft.x, y}, {plot.bottomRight.x, y}, kGridColor);
     const std::string label = formatted("%g", tick);
     const float width = ImGui::CalcTextSize(label.c_str()).x;
-    list.AddText({plot.topLeft.x - width - 4, y - 7}, kTextColor, label.c_str());
+    list.AddText({plot.topLeft.x - width - 4, y - em / 2}, kTextColor, label.c_str());
   }
   for (const double tick : plot.seconds.ticks(kTicksAcross)) {
     const float x = plot.at(tick, 0).x;
@@ -76,7 +79,7 @@ void drawAxes(ImDrawList& list, const Plot& plot) {
     list.AddText({std::min(x - width / 2, plot.bottomRight.x - width + 6), bottom + 1}, kTextColor,
                  label.c_str());
   }
-  list.AddText({plot.topLeft.x - 11, plot.bottomRight.y + 4}, kTextColor, "0");
+  list.AddText({plot.topLeft.x - 0.85f * em, plot.bottomRight.y + 0.3f * em}, kTextColor, "0");
   list.AddLine({plot.topLeft.x, plot.bottomRight.y}, plot.bottomRight, kFrameColor);
   list.AddRect(plot.topLeft, {plot.bottomRight.x, bottom}, kFrameColor);
 }
@@ -121,7 +124,7 @@ void drawErrorPlot(const LiveError::State& state, bool corrections) {
   const Plot plot = plotOf(state.points, corner, width);
   drawAxes(list, plot);
   for (const Curve& curve : kCurves) drawCurve(list, plot, state.points, curve);
-  ImGui::Dummy({width, kHeight});
+  ImGui::Dummy({width, kHeight * ImGui::GetFontSize()});
   ImGui::TextWrapped("%s", errorPlotStatus(state, corrections).c_str());
 }
 

@@ -5,29 +5,32 @@
 #include <algorithm>
 
 #include "app/viewer/error_plot.h"
+#include "app/viewer/legend_view.h"
 
 namespace saccade::app {
-
-void FrameTimes::add(float milliseconds) {
-  if (values_.size() == kShown) values_.erase(values_.begin());
-  values_.push_back(milliseconds);
-}
 
 const std::vector<KeyHelp>& keyHelp() {
   static const std::vector<KeyHelp> keys{{"W A S D, arrows", "walk"},
                                          {"Q / E", "down / up"},
                                          {"Shift", "four times as fast"},
                                          {"drag with left button", "look around"},
+                                         {"click", "pick an object, and attend to it"},
                                          {"right click", "mouse-look on, Esc: off"},
                                          {"wheel", "zoom"},
-                                         {"1 to 5", "overlay: IDs, saliency, level, thread, age"},
+                                         {"1 to 8", "overlays, in the order of the list"},
                                          {"0", "no overlay"},
                                          {"C", "corrections on / off"},
                                          {"R", "reuse of samples on / off"},
-                                         {"Home", "back to the first camera"},
+                                         {"Home", "fly to the first camera"},
+                                         {"B", "keep this place"},
+                                         {"F2 to F9", "fly to place 1 to 8"},
+                                         {"Control + F2 to F9", "keep this place there instead"},
+                                         {"T", "record a path; again: save it"},
+                                         {"P", "play the path; again: stop"},
+                                         {"L", "path in a loop on / off"},
                                          {"Tab", "panel on / off"},
                                          {"F11", "full screen"},
-                                         {"F12", "save a screenshot"},
+                                         {"F12", "save a screenshot (Shift: as EXR)"},
                                          {"F1", "these keys"},
                                          {"Esc", "leave mouse-look; else close"}};
   return keys;
@@ -35,17 +38,35 @@ const std::vector<KeyHelp>& keyHelp() {
 
 namespace {
 
-void drawControls(PanelState& s, UiItems& items) {
-  ImGui::TextUnformatted("Attention");
-  ImGui::SliderFloat("##attention", &s.attention, 0, 1, "");
+float em() { return ImGui::GetFontSize(); }
+float fullWidth() { return ImGui::GetContentRegionAvail().x; }
+
+bool section(const char* title, UiItems& items, const char* item, bool open = true) {
+  const bool isOpen = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  items.note(item);
+  return isOpen;
+}
+
+bool button(const char* label, UiItems& items, const std::string& item) {
+  const bool pressed = ImGui::Button(label);
+  items.note(item);
+  return pressed;
+}
+
+void drawAttention(PanelState& s, UiItems& items) {
+  ImGui::SetNextItemWidth(fullWidth());
+  ImGui::SliderFloat("##attention", &s.attention, 0, 1, "%.2f");
   items.note("attention");
   ImGui::TextUnformatted("saliency");
-  ImGui::SameLine(kPanelWidth - 110);
+  ImGui::SameLine(ImGui::GetCursorPosX() + fullWidth() - ImGui::CalcTextSize("task").x);
   ImGui::TextUnformatted("task");
-  ImGui::SliderFloat("fps", &s.fps, 1, 60, "%.0f");
-  items.note("fps");
-  ImGui::SliderFloat("EV", &s.exposureEv, -8, 8, "%+.1f");
+}
+
+void drawPicture(PanelState& s, UiItems& items) {
+  ImGui::SliderFloat("exposure", &s.exposureEv, -8, 8, "%+.1f EV");
   items.note("exposure");
+  ImGui::SliderFloat("frames/s", &s.fps, 1, 60, "%.0f");
+  items.note("fps");
   ImGui::SliderFloat("delta", &s.delta, 0.01f, 0.4f, "%.2f");
   items.note("delta");
   ImGui::Checkbox("corrections", &s.corrections);
@@ -53,55 +74,116 @@ void drawControls(PanelState& s, UiItems& items) {
   ImGui::SameLine();
   ImGui::Checkbox("reuse samples", &s.reuse);
   items.note("reuse");
+  if (button("Screenshot", items, "screenshot")) s.screenshotWanted = true;
+  ImGui::SameLine();
+  if (button("EXR", items, "exr")) s.exrWanted = true;
+  ImGui::SameLine();
+  if (button("Keys (F1)", items, "keys")) s.showKeys = !s.showKeys;
 }
 
-void drawOverlayChoice(PanelState& s, UiItems& items) {
+void drawOverlayChoice(PanelState& s, const PanelView& view) {
   const char* current = s.overlay ? aovNames()[static_cast<std::size_t>(*s.overlay)].c_str() : "none";
-  if (ImGui::BeginCombo("overlay", current)) {
+  if (ImGui::BeginCombo("shown", current)) {
     if (ImGui::Selectable("none", !s.overlay)) s.overlay.reset();
     for (std::size_t i = 0; i < aovNames().size(); ++i) {
       const auto aov = static_cast<Aov>(i);
       if (ImGui::Selectable(aovNames()[i].c_str(), s.overlay == aov)) s.overlay = aov;
+      view.items.note("overlay " + aovNames()[i]);
     }
     ImGui::EndCombo();
   }
-  items.note("overlay");
-  if (s.overlay) ImGui::TextWrapped("%s", aovLegend(*s.overlay));
+  view.items.note("overlay");
+  if (!s.overlay || !view.overlay) return;
+  ImGui::SliderFloat("strength", &s.overlayStrength, 0.1f, 1, "%.1f");
+  view.items.note("overlayStrength");
+  drawLegend(view.overlay->legend, view.overlay->scale);
 }
 
-void drawFrameTimes(const PanelState& s, const FrameTimes& times) {
-  const float budget = 1000 / s.fps;
-  const std::vector<float>& values = times.values();
-  const float last = values.empty() ? 0 : values.back();
-  float mean = 0;
-  for (const float ms : values) mean += ms / static_cast<float>(values.size());
-  ImGui::Text("%.1f frames/s (%.1f ms, budget %.1f)", mean > 0 ? 1000 / mean : 0.0f, last, budget);
-  ImGui::PlotLines("##times", values.data(), static_cast<int>(values.size()), 0, "frame time", 0, 2 * budget,
-                   ImVec2(kPanelWidth - 30, 60));
+void drawPicked(const PanelView& view) {
+  const std::optional<PickedObject>& picked = view.tools.picked();
+  if (!picked) return ImGui::TextWrapped("Click on an object in the picture.");
+  ImGui::TextWrapped("%s", picked->name.c_str());
+  ImGui::TextWrapped("material: %s", picked->material.empty() ? "without name" : picked->material.c_str());
+  for (const std::string& lobe : picked->lobes) ImGui::BulletText("%s", lobe.c_str());
+  if (picked->id > 0) {
+    ImGui::Text("non-diffuse, id %u: corrected", picked->id);
+  } else {
+    ImGui::TextUnformatted("diffuse: from the maps alone");
+  }
+  ImGui::Text("%.2f m away", static_cast<double>(picked->distance));
 }
 
-void drawCounts(const FrameLoop& loop) {
+void drawPlaces(PanelState& s, const PanelView& view) {
+  if (button("Keep this place (B)", view.items, "bookmark")) s.wanted.addBookmark = true;
+  const std::vector<core::Camera>& places = view.tools.bookmarks();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    ImGui::PushID(static_cast<int>(i));
+    if (button(places[i].name.c_str(), view.items, "place " + number)) s.wanted.goTo = i;
+    ImGui::SameLine();
+    if (button("set", view.items, "set " + number)) s.wanted.setBookmark = i;
+    ImGui::SameLine();
+    if (button("remove", view.items, "remove " + number)) s.wanted.removeBookmark = i;
+    ImGui::PopID();
+  }
+}
+
+void drawPath(PanelState& s, const PanelView& view) {
+  const SceneTools& tools = view.tools;
+  if (button(tools.recording() ? "Stop and save (T)" : "Record path (T)", view.items, "recordPath"))
+    s.wanted.recordPath = true;
+  ImGui::SameLine();
+  if (button(tools.playing() ? "Stop (P)" : "Play (P)", view.items, "playPath")) s.wanted.playPath = true;
+  ImGui::Checkbox("in a loop (L)", &s.loopPath);
+  view.items.note("loopPath");
+  if (tools.recording()) ImGui::Text("recording: %.1f s", tools.recordedSeconds());
+}
+
+void drawProgress(const FrameLoop& loop) {
   const RunStats& stats = loop.stats();
   const std::uint32_t pixels = loop.frame().nonDiffusePixels;
   const float done =
       pixels > 0 ? static_cast<float>(loop.layer().exactCount()) / static_cast<float>(pixels) : 1.0f;
-  ImGui::ProgressBar(done, ImVec2(kPanelWidth - 30, 0), loop.converged() ? "converged" : nullptr);
+  ImGui::ProgressBar(done, ImVec2(fullWidth(), 0), loop.converged() ? "converged" : nullptr);
   ImGui::Text(
-      "new samples a frame: %llu",
-      static_cast<unsigned long long>(stats.samplesPerFrame.empty() ? 0 : stats.samplesPerFrame.back()));
-  ImGui::Text("cached samples: %zu", loop.cache().size());
-  ImGui::Text("non-diffuse pixels: %u", pixels);
+      "%llu new samples a frame, %zu cached",
+      static_cast<unsigned long long>(stats.samplesPerFrame.empty() ? 0 : stats.samplesPerFrame.back()),
+      loop.cache().size());
+  ImGui::Text("%u non-diffuse pixels", pixels);
+}
+
+void drawSections(PanelState& s, const PanelView& view) {
+  if (!s.message.empty()) {
+    ImGui::TextWrapped("%s", s.message.c_str());
+    ImGui::Separator();
+  }
+  if (section("Attention", view.items, "section attention")) drawAttention(s, view.items);
+  if (section("Picture", view.items, "section picture")) drawPicture(s, view.items);
+  if (section("Overlay", view.items, "section overlay")) drawOverlayChoice(s, view);
+  if (section("Object", view.items, "section object")) drawPicked(view);
+  if (section("Places and paths", view.items, "section places")) {
+    drawPlaces(s, view);
+    drawPath(s, view);
+  }
+  if (section("Frame time", view.items, "section times")) {
+    drawStageBars(view.times, 1000 / s.fps);
+    drawProgress(view.loop);
+  }
+  ImGui::SetNextItemOpen(s.errorPlotOpen);
+  s.errorPlotOpen = section("Error against seconds at rest", view.items, "errorPlot");
+  if (s.errorPlotOpen) drawErrorPlot(view.error, s.corrections);
 }
 
 void drawKeys(PanelState& s, int height) {
-  ImGui::SetNextWindowPos(ImVec2(20, 20), ImGuiCond_Always);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(600, static_cast<float>(height) - 40));
+  const float line = em();
+  ImGui::SetNextWindowPos(ImVec2(line, line), ImGuiCond_Always);
+  ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(46 * line, static_cast<float>(height) - 2 * line));
   if (ImGui::Begin("Keys (F1)", &s.showKeys,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
-    for (const KeyHelp& line : keyHelp()) {
-      ImGui::TextUnformatted(line.keys);
-      ImGui::SameLine(190);
-      ImGui::TextUnformatted(line.action);
+    for (const KeyHelp& help : keyHelp()) {
+      ImGui::TextUnformatted(help.keys);
+      ImGui::SameLine(14 * line);
+      ImGui::TextUnformatted(help.action);
     }
   }
   ImGui::End();
@@ -116,24 +198,8 @@ void drawPanel(PanelState& state, const PanelView& view) {
   ImGui::SetNextWindowSize(ImVec2(static_cast<float>(view.area.width), static_cast<float>(view.area.height)));
   ImGui::Begin("Saccade", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
-  ImGui::PushItemWidth(kPanelWidth - 90);
-  drawControls(state, view.items);
-  ImGui::Separator();
-  drawOverlayChoice(state, view.items);
-  ImGui::Separator();
-  drawFrameTimes(state, view.times);
-  drawCounts(view.loop);
-  ImGui::Separator();
-  if (ImGui::Button("Screenshot (F12)")) state.screenshotWanted = true;
-  view.items.note("screenshot");
-  ImGui::SameLine();
-  if (ImGui::Button("Keys (F1)")) state.showKeys = !state.showKeys;
-  view.items.note("keys");
-  if (!state.message.empty()) ImGui::TextWrapped("%s", state.message.c_str());
-  ImGui::SetNextItemOpen(state.errorPlotOpen);
-  state.errorPlotOpen = ImGui::CollapsingHeader("Error against seconds at rest");
-  view.items.note("errorPlot");
-  if (state.errorPlotOpen) drawErrorPlot(view.error, state.corrections);
+  ImGui::PushItemWidth(-6 * em());  // room for the labels
+  drawSections(state, view);
   ImGui::PopItemWidth();
   ImGui::End();
 }

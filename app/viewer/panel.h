@@ -1,5 +1,5 @@
 // The panel at the window's side: what the user sets, and what the frame loop reports. Dear ImGui 1.86, no
-// docking.
+// docking. All sizes are multiples of the font's, so that a larger font makes a larger panel.
 #pragma once
 
 #include <optional>
@@ -9,6 +9,8 @@
 #include "app/session/frame_loop.h"
 #include "app/session/live_error.h"
 #include "app/session/overlays.h"
+#include "app/viewer/scene_tools.h"
+#include "app/viewer/stage_bars.h"
 #include "app/viewer/ui_items.h"
 #include "render/window/presenter.h"
 
@@ -25,24 +27,17 @@ struct PanelState {
   bool corrections = true;
   bool reuse = true;
   std::optional<Aov> overlay;
+  float overlayStrength = 1;  ///< over the picture, (0, 1]
+  bool loopPath = false;
   /// Error is measured only while its plot can be seen. Open at first: the work takes only time that nothing
   /// else wants, and a curve that starts when it is asked for has lost its beginning.
   bool errorPlotOpen = true;
   bool visible = true;  ///< else the picture has the whole window
   bool showKeys = false;
   bool screenshotWanted = false;
+  bool exrWanted = false;
+  ToolRequests wanted;  ///< since the last frame
   std::string message;  ///< last thing done, such as the name of a screenshot
-};
-
-/// Frame times for the plot, newest last.
-class FrameTimes {
- public:
-  void add(float milliseconds);
-  const std::vector<float>& values() const { return values_; }
-
- private:
-  static constexpr std::size_t kShown = 150;
-  std::vector<float> values_;
 };
 
 /// One line per key.
@@ -52,11 +47,19 @@ struct KeyHelp {
 };
 const std::vector<KeyHelp>& keyHelp();
 
+/// The overlay that the picture shows.
+struct ShownOverlay {
+  AovScale scale;
+  AovLegend legend;
+};
+
 /// What the panel shows of the open scene, and where.
 struct PanelView {
   const FrameLoop& loop;
-  const FrameTimes& times;
+  const StageTimes& times;
   const LiveError::State& error;
+  const SceneTools& tools;
+  const std::optional<ShownOverlay>& overlay;
   render::PixelRect area;  ///< framebuffer pixels; of no width while the panel is hidden
   UiItems& items;          ///< the panel's controls are noted there
 };

@@ -1,7 +1,12 @@
 #include "app/viewer/scene_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "app/session/picking.h"
+#include "core/error.h"
+#include "core/image_io.h"
 
 namespace saccade::app {
 
@@ -26,12 +31,13 @@ SceneView::SceneView(const WalkOptions& options, std::unique_ptr<const Workspace
             {options_.corrective, std::max(1, tracerThreads(options_.run)), options_.run.seed,
              options_.run.exposureEv, true}),
       home_(chooseCamera(workspace_->scene, options_.camera)),
-      walker_(home_, workspace_->scene.bounds.diagonal()) {
+      walker_(home_, workspace_->scene.bounds.diagonal()),
+      tools_(workspace_->scene) {
   if (recorder_) loop_.recordTo(*recorder_);
   liveError_.emplace(tracedBy(loop_.tracer()));
   renderer_.setMaps(&workspace_->maps);
-  if (!options_.path.empty()) path_ = CameraPath::read(options_.path);
-  if (options_.orbit) path_ = CameraPath::orbit(home_, kOrbitPeriodSeconds);
+  if (!options_.path.empty()) tools_.play(CameraPath::read(options_.path), 0);
+  if (options_.orbit) tools_.play(CameraPath::orbit(home_, kOrbitPeriodSeconds), 0);
   if (options_.keepCache) {
     kept_.emplace(*workspace_, options_.scene, options_.corrective, options_.run.seed);
     kept_->restore(loop_);
@@ -39,26 +45,43 @@ SceneView::SceneView(const WalkOptions& options, std::unique_ptr<const Workspace
 }
 
 void SceneView::keyPressed(Key key) {
-  if (key == Key::home) walker_.setCamera(home_);
+  if (key != Key::home) return;
+  tools_.release();
+  walker_.setCamera(home_);
+}
+
+void SceneView::look(const core::Vec2& deltaPx) {
+  tools_.release();
+  walker_.look(deltaPx.x, deltaPx.y);
+}
+
+void SceneView::click(const core::Vec2& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x)), y = static_cast<int>(std::floor(pixel.y));
+  const core::FramePtr& frame = loop_.layer().frame();
+  if (!frame || x < 0 || y < 0 || x >= frame->view.width() || y >= frame->view.height()) return;
+  tools_.setPicked(pick(*frame, *workspace_->world, x, y));
 }
 
 void SceneView::moveCamera(bool keysAreFree) {
   const double now = secondsSince(start_);
   const auto elapsed = static_cast<float>(now - lastMove_);
   lastMove_ = now;
-  if (path_) {
-    walker_.setCamera(path_->at(now));
-    if (now >= path_->lengthSeconds()) path_.reset();
-    return;
-  }
-  if (!keysAreFree) return;
+  if (keysAreFree) walk(elapsed);
+  if (const auto camera = tools_.camera(now)) walker_.setCamera(*camera);
+  tools_.observe(walker_.camera(), now);
+}
+
+/// As the keys say; they take the camera from flights and paths.
+void SceneView::walk(float elapsedSeconds) {
   const auto axis = [this](Key plus, Key minus) {
     return static_cast<float>(window_.isDown(plus)) - static_cast<float>(window_.isDown(minus));
   };
-  walker_.move({std::clamp(axis(Key::w, Key::s) + axis(Key::up, Key::down), -1.0f, 1.0f),
-                std::clamp(axis(Key::d, Key::a) + axis(Key::right, Key::left), -1.0f, 1.0f),
-                axis(Key::e, Key::q), window_.isDown(Key::shift)},
-               elapsed);
+  const WalkInput input{std::clamp(axis(Key::w, Key::s) + axis(Key::up, Key::down), -1.0f, 1.0f),
+                        std::clamp(axis(Key::d, Key::a) + axis(Key::right, Key::left), -1.0f, 1.0f),
+                        axis(Key::e, Key::q), window_.isDown(Key::shift)};
+  if (input.forward == 0 && input.right == 0 && input.up == 0) return;
+  tools_.release();
+  walker_.move(input, elapsedSeconds);
 }
 
 void SceneView::applyPanel(const PanelState& panel) {
@@ -67,6 +90,7 @@ void SceneView::applyPanel(const PanelState& panel) {
   loop_.setDelta(panel.delta);
   loop_.showCorrections(panel.corrections);
   loop_.reuseSamples(panel.reuse);
+  tools_.setLoop(panel.loopPath);
 }
 
 /// Before a step: what the last one left is a point of the curve once it is known that the camera stays. A
@@ -90,9 +114,34 @@ void SceneView::step(const PanelState& panel, ImageSize size, Clock::time_point 
 }
 
 const core::ImageRgba8& SceneView::shown(const PanelState& panel) {
-  if (!panel.overlay) return loop_.display();
-  overlay_ = aovPicture(*panel.overlay, aovValues(*panel.overlay, loop_), options_.corrective.maxAge);
-  return overlay_;
+  shownOverlay_.reset();
+  if (!panel.overlay && !tools_.picked()) return loop_.display();
+  picture_ = loop_.display();
+  if (panel.overlay) {
+    const AovImage image = aovImage(*panel.overlay, loop_);
+    const AovScale scale(*panel.overlay, image.values, options_.corrective.maxAge);
+    shownOverlay_ = {scale, aovLegend(scale, image.values, workspace_->scene)};
+    layOver(aovPicture(image, scale), panel.overlayStrength, picture_);
+  }
+  if (tools_.picked()) outline(*tools_.picked(), workspace_->scene, loop_.frame(), picture_);
+  return picture_;
+}
+
+void SceneView::serve(PanelState& panel) {
+  tools_.serve(std::exchange(panel.wanted, {}), walker_.camera(), secondsSince(start_));
+  if (std::exchange(panel.exrWanted, false)) saveExr(panel);
+  std::string message = tools_.takeMessage();
+  if (!message.empty()) panel.message = std::move(message);
+}
+
+void SceneView::saveExr(PanelState& panel) {
+  try {
+    const std::filesystem::path file = freeFile("saccade", ".exr");
+    core::writeExr(file, loop_.linear());
+    panel.message = "saved " + file.string();
+  } catch (const core::Error& e) {
+    panel.message = e.what();
+  }
 }
 
 int SceneView::end() {

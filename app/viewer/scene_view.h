@@ -7,12 +7,12 @@
 
 #include "app/cli/walk_options.h"
 #include "app/recording/session_recorder.h"
-#include "app/session/camera_path.h"
 #include "app/session/frame_loop.h"
 #include "app/session/kept_cache.h"
 #include "app/session/live_error.h"
 #include "app/session/workspace.h"
 #include "app/viewer/panel.h"
+#include "app/viewer/scene_tools.h"
 #include "app/viewer/walker.h"
 #include "render/base/base_renderer.h"
 #include "render/window/window.h"
@@ -32,15 +32,20 @@ class SceneView {
 
   /// Input, as it arrives, that the panel does not want.
   void keyPressed(render::Key key);
-  void look(const core::Vec2& deltaPx) { walker_.look(deltaPx.x, deltaPx.y); }
+  void look(const core::Vec2& deltaPx);
+  /// A click on the picture, in its pixels: picks what is there.
+  void click(const core::Vec2& pixel);
   void zoom(float steps) { walker_.zoom(steps); }
   /// Once a frame: along the path, else as the keys that are down say, while they are not typed into a field.
   void moveCamera(bool keysAreFree);
 
   /// A frame that ends, without what the window does after it, at the deadline.
   void step(const PanelState& panel, ImageSize size, Clock::time_point deadline);
-  /// What the last step shows: its picture or the panel's overlay. Valid until the next call or step.
+  /// What the last step shows: its picture, the panel's overlay, the outline of what is picked. Valid until
+  /// the next call or step.
   const core::ImageRgba8& shown(const PanelState& panel);
+  /// What the panel and keys asked for; says in the panel what became of it.
+  void serve(PanelState& panel);
 
   /// After the last step: keeps the cache and closes the recording, saying what became of it. Returns the
   /// exit status of the walk.
@@ -49,12 +54,17 @@ class SceneView {
   const Workspace& workspace() const { return *workspace_; }
   const FrameLoop& loop() const { return loop_; }
   const core::Camera& camera() const { return walker_.camera(); }
+  const SceneTools& tools() const { return tools_; }
+  /// That shown() drew, if any.
+  const std::optional<ShownOverlay>& overlay() const { return shownOverlay_; }
   LiveError::State error() const { return liveError_->state(); }
   RunStats stats() const;
 
  private:
   void applyPanel(const PanelState& panel);
   void observeRest(const PanelState& panel, ImageSize size);
+  void walk(float elapsedSeconds);
+  void saveExr(PanelState& panel);
 
   // In the order in which they depend on one another.
   const WalkOptions options_;
@@ -67,8 +77,9 @@ class SceneView {
   std::optional<KeptCache> kept_;
   core::Camera home_;
   Walker walker_;
-  std::optional<CameraPath> path_;
-  core::ImageRgba8 overlay_;
+  SceneTools tools_;
+  std::optional<ShownOverlay> shownOverlay_;
+  core::ImageRgba8 picture_;  ///< with overlay and outline
   Clock::time_point start_ = Clock::now();
   double lastMove_ = 0;                   ///< seconds since start_
   Clock::time_point restStart_ = start_;  ///< the camera came here

@@ -13,8 +13,10 @@
 
 #include "app/cli/console.h"
 #include "app/session/headless.h"
+#include "app/viewer/click.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/scene_view.h"
+#include "core/error.h"
 #include "core/image_io.h"
 #include "render/window/imgui_layer.h"
 #include "render/window/presenter.h"
@@ -93,8 +95,10 @@ class Viewer {
     if (scene_) scene_->step(panel_, size, start + std::chrono::duration_cast<Clock::duration>(budget));
     const Clock::time_point stepped = Clock::now();
     present(size);
-    presentSeconds_ = 0.8 * presentSeconds_ + 0.2 * secondsSince(stepped);
-    times_.add(static_cast<float>(1000 * secondsSince(start)));
+    const double presented = secondsSince(stepped);
+    presentSeconds_ = 0.8 * presentSeconds_ + 0.2 * presented;
+    times_.add(scene_ ? &scene_->loop().stats().stageMs : nullptr, 1000 * presented,
+               1000 * secondsSince(start));
   }
 
   void present(ImageSize size) {
@@ -110,6 +114,7 @@ class Viewer {
       core::writePng(options_.uiScreenshot, window_.screenshot());
     if (std::exchange(panel_.screenshotWanted, false) && scene_) saveScreenshot(shown);
     window_.swap();
+    if (scene_) scene_->serve(panel_);
   }
 
   void drawPanels(ImageSize size) {
@@ -118,19 +123,20 @@ class Viewer {
     drawPanel(panel_, {.loop = scene_->loop(),
                        .times = times_,
                        .error = error,
+                       .tools = scene_->tools(),
+                       .overlay = scene_->overlay(),
                        .area = {size.width, 0, panelWidth(), window_.height()},
                        .items = items_});
   }
 
   void saveScreenshot(const core::ImageRgba8& image) {
-    std::string name;
-    for (int i = 1; name.empty() || std::filesystem::exists(name); ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "saccade_%04d.png", i);
-      name = text;
+    try {
+      const std::filesystem::path file = freeFile("saccade", ".png");
+      core::writePng(file, image);
+      panel_.message = "saved " + file.string();
+    } catch (const core::Error& e) {
+      panel_.message = e.what();
     }
-    core::writePng(name, image);
-    panel_.message = "saved " + (std::filesystem::current_path() / name).string();
   }
 
   int panelWidth() const { return panel_.visible ? kPanelWidth : 0; }
@@ -159,7 +165,10 @@ class Viewer {
         window_.setFullscreen(!window_.fullscreen());
         break;
       case Key::f12:
-        panel_.screenshotWanted = true;
+        (window_.isDown(Key::shift) ? panel_.exrWanted : panel_.screenshotWanted) = true;
+        break;
+      case Key::l:
+        panel_.loopPath = !panel_.loopPath;
         break;
       case Key::tab:
         panel_.visible = !panel_.visible;
@@ -181,17 +190,25 @@ class Viewer {
         }
         break;
       default:
-        if (e.key >= Key::digit1 && e.key <= Key::digit5) {
-          panel_.overlay = static_cast<Aov>(static_cast<int>(e.key) - static_cast<int>(Key::digit1));
-        }
+        chooseOverlay(static_cast<int>(e.key) - static_cast<int>(Key::digit1));
     }
+    request(e.key, window_.isDown(Key::control), panel_.wanted);
     if (scene_) scene_->keyPressed(e.key);
   }
+  void chooseOverlay(int number) {
+    if (number >= 0 && number < static_cast<int>(aovNames().size()))
+      panel_.overlay = static_cast<Aov>(number);
+  }
   void handle(const render::MouseButtonEvent& e) {
+    const bool free = !window_.mouseCaptured() && !ImGui::GetIO().WantCaptureMouse;
+    if (e.button == render::MouseButton::left && e.pressed && free) leftButton_.press();
+    if (e.button == render::MouseButton::left && !e.pressed && leftButton_.release() && scene_)
+      scene_->click(e.positionPx);
     if (e.button != render::MouseButton::right || !e.pressed || ImGui::GetIO().WantCaptureMouse) return;
     window_.setMouseCaptured(!window_.mouseCaptured());
   }
   void handle(const render::MouseMoveEvent& e) {
+    leftButton_.move(e.deltaPx);
     const bool dragging = window_.isDown(render::MouseButton::left) && !ImGui::GetIO().WantCaptureMouse;
     if (scene_ && (window_.mouseCaptured() || dragging)) scene_->look(e.deltaPx);
   }
@@ -212,7 +229,8 @@ class Viewer {
   render::ImguiLayer imgui_;
   std::optional<SceneView> scene_;  ///< nothing: none is open
   UiItems items_;
-  FrameTimes times_;
+  StageTimes times_;
+  ClickDetector leftButton_;
   bool open_ = true;
   bool closing_ = false;  ///< this frame is the last
   Clock::time_point start_ = Clock::now();
