@@ -11,8 +11,8 @@
 namespace saccade::app {
 
 const std::vector<std::string>& aovNames() {
-  static const std::vector<std::string> names{"id",  "saliency", "level",     "thread",
-                                              "age", "validity", "footprint", "importance"};
+  static const std::vector<std::string> names{"id",       "saliency",  "level",      "thread", "age",
+                                              "validity", "footprint", "importance", "rank"};
   return names;
 }
 
@@ -128,6 +128,10 @@ core::ImageGray values(Aov aov, const FrameLoop& loop) {
       return splatValues(loop, 0, [](const Splat& s) { return static_cast<float>(s.footprint); });
     case Aov::importance:
       return importanceValues(loop);
+    case Aov::rank: {
+      const std::vector<std::uint32_t> ranks = loop.ranks();
+      return byObject(loop.frame(), {ranks.begin(), ranks.end()});
+    }
   }
   return {};
 }
@@ -182,6 +186,8 @@ const char* meaningOf(Aov aov) {
       return "Side of the sample's splat; lines part the splats";
     case Aov::importance:
       return "Importance: saliency and task as the slider mixes them";
+    case Aov::rank:
+      return "Place in the queue";
   }
   return "";
 }
@@ -237,6 +243,10 @@ AovScale::AovScale(Aov aov, const core::ImageGray& values, int maxAge) : aov_(ao
     const float high = std::max(1.0f, largest());
     ramp_ = {0, high, "0", number(high), false, kVisible, 1, kLeast};
   }
+  if (aov == Aov::rank) {
+    const float last = std::max(2.0f, largest());
+    ramp_ = {last, 1, number(last), "1: next", false, kVisible, 1, 1};
+  }
 }
 
 core::Rgba8 AovScale::color(float value) const {
@@ -278,6 +288,7 @@ AovLegend aovLegend(const AovScale& scale, const core::ImageGray& values, const 
   AovLegend legend{meaningOf(scale.aov()), "diffuse, or no sample", scale.ramp(), {}, 0};
   if (scale.aov() == Aov::saliency) legend.black = "";
   if (scale.aov() == Aov::id || scale.aov() == Aov::importance) legend.black = "diffuse";
+  if (scale.aov() == Aov::rank) legend.black = "diffuse, or all handed out";
   if (scale.ramp()) return legend;
   const std::vector<std::uint32_t> counts = countsOf(values);
   std::vector<std::uint32_t> present;

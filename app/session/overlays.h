@@ -11,7 +11,7 @@
 
 namespace saccade::app {
 
-enum class Aov { id, saliency, level, thread, age, validity, footprint, importance };
+enum class Aov { id, saliency, level, thread, age, validity, footprint, importance, rank };
 
 /// Names as on the command line, in the order of the enum.
 const std::vector<std::string>& aovNames();
@@ -34,7 +34,8 @@ enum class Validity {
 struct AovImage {
   /// Exact values a pixel: id 0.. ; saliency [0, 1]; level 0 (uncorrected) to 7; thread 1.. (0 = none); age
   /// in camera changes, 0 = fresh, -1 = no sample; Validity; side in pixels of the square that the sample was
-  /// splatted with, 0 = no sample; importance as of the last analysis, 0 = diffuse.
+  /// splatted with, 0 = no sample; importance as of the last analysis, 0 = diffuse;
+  /// rank of the object in the queue, 1 = corrected next, 0 = all of it handed out, or diffuse.
   core::ImageGray values;
   /// footprint: the pixels whose right or lower neighbour shows another splat; empty for the others.
   std::vector<std::uint8_t> edges;
@@ -47,7 +48,7 @@ AovImage aovImage(Aov aov, const FrameLoop& loop);
 /// Colours of an overlay's values: pictures and legends have no other source.
 class AovScale {
  public:
-  /// `values` (those of the picture) set the end of a scale that has none of its own: importance.
+  /// `values` (those of the picture) set the end of a scale that has none of its own: importance, rank.
   AovScale(Aov aov, const core::ImageGray& values, int maxAge);
 
   /// Categories (id, level, thread, validity) or a ramp; what has no value is black.

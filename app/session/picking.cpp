@@ -14,7 +14,7 @@ constexpr core::Rgba8 kInnerColor{20, 20, 20, 255};
 
 std::string labelled(const char* name, const char* property, float value) {
   char text[64];
-  std::snprintf(text, sizeof text, "%s, %s %.2g", name, property, static_cast<double>(value));
+  std::snprintf(text, sizeof text, "%s, %s %.3g", name, property, static_cast<double>(value));
   return text;
 }
 

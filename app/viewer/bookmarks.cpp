@@ -51,7 +51,8 @@ core::Camera toCamera(const Json& object) {
 }  // namespace
 
 Bookmarks::Bookmarks(std::filesystem::path file, const std::filesystem::path& scene)
-    : file_(std::move(file)), scene_(std::filesystem::weakly_canonical(scene).string()) {
+    : file_(std::move(file)),
+      scene_(std::filesystem::weakly_canonical(std::filesystem::absolute(scene)).string()) {
   const Json root = readFile(file_);
   const auto found = root["scenes"].find(scene_);
   if (found == root["scenes"].end()) return;

@@ -17,7 +17,7 @@ const std::vector<KeyHelp>& keyHelp() {
                                          {"click", "pick an object, and attend to it"},
                                          {"right click", "mouse-look on, Esc: off"},
                                          {"wheel", "zoom"},
-                                         {"1 to 8", "overlays, in the order of the list"},
+                                         {"1 to 9", "overlays, in the order of the list"},
                                          {"0", "no overlay"},
                                          {"C", "corrections on / off"},
                                          {"R", "reuse of samples on / off"},

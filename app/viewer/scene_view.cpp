@@ -60,6 +60,7 @@ void SceneView::click(const core::Vec2& pixel) {
   const core::FramePtr& frame = loop_.layer().frame();
   if (!frame || x < 0 || y < 0 || x >= frame->view.width() || y >= frame->view.height()) return;
   tools_.setPicked(pick(*frame, *workspace_->world, x, y));
+  if (tools_.picked()) loop_.attend(tools_.picked()->id);
 }
 
 void SceneView::moveCamera(bool keysAreFree) {

@@ -74,6 +74,18 @@ TEST_F(Overlays, ImportanceIsTheAnalysersByObject) {
   EXPECT_TRUE(some);
 }
 
+TEST_F(Overlays, RanksAreTheQueuesByObject) {
+  walk(AgingTest::haber, 1, 20);
+  const std::vector<std::uint32_t> ranks = loop().ranks();
+  float best = 0;
+  forEachPixel(aovImage(Aov::rank, loop()).values, [&](int x, int y, float v) {
+    const std::uint32_t id = loop().frame().idAt(x, y);
+    ASSERT_EQ(v, id > 0 ? static_cast<float>(ranks[id]) : 0);
+    if (v > 0 && (best == 0 || v < best)) best = v;
+  });
+  EXPECT_EQ(best, 1);
+}
+
 TEST_F(Overlays, AFirstFramesFootprintsAreTheLatticesSquares) {
   walk(AgingTest::haber, 1);
   std::set<float> sides;

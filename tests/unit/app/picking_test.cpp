@@ -111,7 +111,7 @@ TEST(Lobes, SayWhatAMaterialSendsBack) {
   m.specular = 1;
   m.transmission = 1;
   m.ior = 1.45f;
-  EXPECT_EQ(lobesOf(m), (List{"glass, index 1.4", "gloss, roughness 0.25"}));
+  EXPECT_EQ(lobesOf(m), (List{"glass, index 1.45", "gloss, roughness 0.25"}));
   m.unlit = true;
   EXPECT_EQ(lobesOf(m), List{"unlit"});
 }
