@@ -48,11 +48,18 @@ core::Camera toCamera(const Json& object) {
   return camera;
 }
 
+/// As given where the file system cannot tell more.
+std::string nameOf(const std::filesystem::path& scene) {
+  std::error_code failed;
+  std::filesystem::path name = std::filesystem::absolute(scene, failed);
+  if (!failed) name = std::filesystem::weakly_canonical(name, failed);
+  return failed ? scene.string() : name.string();
+}
+
 }  // namespace
 
 Bookmarks::Bookmarks(std::filesystem::path file, const std::filesystem::path& scene)
-    : file_(std::move(file)),
-      scene_(std::filesystem::weakly_canonical(std::filesystem::absolute(scene)).string()) {
+    : file_(std::move(file)), scene_(nameOf(scene)) {
   const Json root = readFile(file_);
   const auto found = root["scenes"].find(scene_);
   if (found == root["scenes"].end()) return;

@@ -38,6 +38,8 @@ const std::vector<KeyHelp>& keyHelp() {
 
 namespace {
 
+constexpr float kMessageLines = 4;
+
 float em() { return ImGui::GetFontSize(); }
 float fullWidth() { return ImGui::GetContentRegionAvail().x; }
 
@@ -153,10 +155,6 @@ void drawProgress(const FrameLoop& loop) {
 }
 
 void drawSections(PanelState& s, const PanelView& view) {
-  if (!s.message.empty()) {
-    ImGui::TextWrapped("%s", s.message.c_str());
-    ImGui::Separator();
-  }
   if (section("Attention", view.items, "section attention")) drawAttention(s, view.items);
   if (section("Picture", view.items, "section picture")) drawPicture(s, view.items);
   if (section("Overlay", view.items, "section overlay")) drawOverlayChoice(s, view);
@@ -198,9 +196,18 @@ void drawPanel(PanelState& state, const PanelView& view) {
   ImGui::SetNextWindowSize(ImVec2(static_cast<float>(view.area.width), static_cast<float>(view.area.height)));
   ImGui::Begin("Saccade", nullptr,
                ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  // Messages have a place of their own and the scroll bar is always there, so that no control moves away from
+  // under the pointer.
+  ImGui::BeginChild("sections", ImVec2(0, -kMessageLines * ImGui::GetTextLineHeightWithSpacing()), false,
+                    ImGuiWindowFlags_AlwaysVerticalScrollbar);
   ImGui::PushItemWidth(-6 * em());  // room for the labels
   drawSections(state, view);
   ImGui::PopItemWidth();
+  ImGui::EndChild();
+  ImGui::Separator();
+  ImGui::BeginChild("message");
+  ImGui::TextWrapped("%s", state.message.c_str());
+  ImGui::EndChild();
   ImGui::End();
 }
 
