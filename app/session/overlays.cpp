@@ -204,6 +204,13 @@ std::string labelOf(Aov aov, std::uint32_t value, const core::Scene& scene) {
   return std::to_string(value) + (name.empty() ? "" : " " + name);
 }
 
+/// Categories that are always explained, 1 to this, so that a legend does not change its length; 0: those
+/// that occur.
+std::uint32_t fixedCategories(Aov aov) {
+  if (aov == Aov::validity) return static_cast<std::uint32_t>(kValidity.size()) - 1;
+  return aov == Aov::level ? core::Lattice::kMaxLevel : 0;
+}
+
 /// Pixels by value, [0] left out.
 std::vector<std::uint32_t> countsOf(const core::ImageGray& values) {
   std::vector<std::uint32_t> counts(1);
@@ -292,8 +299,9 @@ AovLegend aovLegend(const AovScale& scale, const core::ImageGray& values, const 
   if (scale.ramp()) return legend;
   const std::vector<std::uint32_t> counts = countsOf(values);
   std::vector<std::uint32_t> present;
-  for (std::uint32_t value = 1; value < counts.size(); ++value) {
-    if (counts[value] > 0) present.push_back(value);
+  const std::uint32_t fixed = fixedCategories(scale.aov());
+  for (std::uint32_t value = 1; value < counts.size() || value <= fixed; ++value) {
+    if (value <= fixed || counts[value] > 0) present.push_back(value);
   }
   if (present.size() > AovLegend::kMostSwatches) {
     legend.leftOut = present.size() - AovLegend::kMostSwatches;

@@ -89,8 +89,9 @@ struct AovLegend {
     core::Rgba8 color;
     std::string label;
   };
-  std::vector<Swatch> swatches;  ///< categories that occur, growing; of the ids those with most pixels
-  std::size_t leftOut = 0;       ///< categories beyond kMostSwatches
+  /// Growing: all levels and kinds of validity; threads and ids that occur, the latter with most pixels.
+  std::vector<Swatch> swatches;
+  std::size_t leftOut = 0;  ///< categories beyond kMostSwatches
 
   static constexpr std::size_t kMostSwatches = 12;
 };

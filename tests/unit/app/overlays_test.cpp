@@ -198,6 +198,13 @@ TEST(AovScale, RampsEndWhereTheirLabelsSay) {
   EXPECT_EQ(colors.size(), 7u);
 }
 
+TEST(AovLegend, OfLevelsAndValidityNeverChanges) {
+  const core::ImageGray none(4, 4);
+  EXPECT_EQ(aovLegend(AovScale(Aov::validity, none, kMaxAge), none, {}).swatches.size(), 4u);
+  EXPECT_EQ(aovLegend(AovScale(Aov::level, none, kMaxAge), none, {}).swatches.size(), 7u);
+  EXPECT_TRUE(aovLegend(AovScale(Aov::thread, none, kMaxAge), none, {}).swatches.empty());
+}
+
 TEST(AovLegend, NamesTheLargestObjectsAndCountsTheRest) {
   core::Scene scene;
   constexpr int kObjects = 20;
