@@ -62,4 +62,17 @@ void compositeDisplay(int width, int height, std::span<const Vec4> baseAndId,
   }
 }
 
+void compositeDisplayAt(std::span<const Pixel> pixels, std::span<const Vec4> baseAndId,
+                        std::span<const Vec3> corrections, float exposureEv, ImageRgba8& out) {
+  assert(pixels.size() == corrections.size() && baseAndId.size() == out.pixels().size());
+  const Srgb8& encode = Srgb8::table();
+  const float scale = std::exp2(exposureEv);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const auto [x, y] = pixels[i];
+    const std::size_t at = static_cast<std::size_t>(y) * out.width() + x;
+    const Vec3 sum = (Vec3(baseAndId[at]) + corrections[i]) * scale;
+    out.pixels()[at] = {encode(sum.x), encode(sum.y), encode(sum.z), 255};
+  }
+}
+
 }  // namespace saccade::core

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "core/corrective/lattice.h"
 #include "core/image.h"
 #include "core/math/types.h"
 
@@ -21,5 +22,9 @@ ImageRgb compositeLinear(int width, int height, std::span<const Vec4> baseAndId,
 /// fit.
 void compositeDisplay(int width, int height, std::span<const Vec4> baseAndId,
                       std::span<const Vec4> correction, float exposureEv, ImageRgba8& out);
+
+/// Some pixels of `out` anew: corrections[i] at pixels[i] instead of what was added there.
+void compositeDisplayAt(std::span<const Pixel> pixels, std::span<const Vec4> baseAndId,
+                        std::span<const Vec3> corrections, float exposureEv, ImageRgba8& out);
 
 }  // namespace saccade::core

@@ -209,6 +209,14 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str()
       ->group(group);
+  static const std::map<std::string, bool> kApproximations{{"probe", true}, {"none", false}};
+  command
+      .add_option("--approximation", o.approximation,
+                  "What shows where nothing is corrected yet: probe (light probes, drawn from the maps) or "
+                  "none (the base layer alone). The converged picture is the same")
+      ->transform(CLI::CheckedTransformer(kApproximations))
+      ->option_text(o.approximation ? "NAME [probe]" : "NAME [none]")
+      ->group(group);
   command
       .add_option("--spp", o.samplesPerPixel,
                   "Sub-samples a pixel (corrective, raytrace: averaged at the pixel centre; path: "

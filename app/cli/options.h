@@ -59,6 +59,7 @@ struct CorrectiveOptions {
   float inhibition = core::RegionQueue::kInhibition;
   int jobSize = 64;
   int samplesPerPixel = 1;
+  bool approximation = false;  ///< light probes where nothing is corrected yet
 };
 
 struct ImageSize {

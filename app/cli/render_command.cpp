@@ -141,6 +141,8 @@ int render(const RenderOptions& o) {
   if (o.budgetMs.has_value() + o.samples.has_value() + (o.converge ? 1 : 0) > 1) {
     throw core::UsageError("--budget-ms, --samples and --converge exclude one another");
   }
+  if (o.corrective.approximation && o.method != "corrective")
+    throw core::UsageError("--approximation needs --method corrective");
   if (!o.aov.empty()) {
     aovByName(o.aov);
     if (o.method != "corrective") throw core::UsageError("--aov needs --method corrective");

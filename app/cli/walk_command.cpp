@@ -161,6 +161,7 @@ void addWalkCommand(CLI::App& program, Run& run) {
       ->check(CLI::PositiveNumber);
   command->add_option("--overlay", o->overlay, "Window: overlay to start with: " + aovList());
   addCameraOptions(*command, o->camera);
+  o->corrective.approximation = true;  // for people; measurements and stills ask for it
   addCorrectiveOptions(*command, o->corrective);
   addRunOptions(*command, o->run);
   command->callback([o, &run] { run = [o] { return walk(*o); }; });

@@ -24,6 +24,7 @@ void forEachNumber(Settings& s, Visit&& visit) {
   visit("exposure", s.picture.exposureEv);
   visit("corrections", s.picture.corrections);
   visit("reuse", s.picture.reuse);
+  visit("approximation", s.picture.approximation);
   visit("attention", s.attention);
 }
 

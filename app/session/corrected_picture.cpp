@@ -88,12 +88,29 @@ void CorrectedPicture::take(const core::SampleBatch& batch) {
 }
 
 void CorrectedPicture::composite() {
+  approximate();
   const StageTimer timer(stats_, "composite");
   if (!display_ || displayIsShared_) display_ = std::make_shared<core::ImageRgba8>();
   displayIsShared_ = false;
   const auto corrections = settings_.corrections ? layer_.pixels() : std::span<const core::Vec4>{};
   core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections,
                          settings_.exposureEv, *display_);
+  core::compositeDisplayAt(bare_, frame_->baseAndId, approximated_, settings_.exposureEv, *display_);
+}
+
+/// What is bare now, and what stands in for its corrections.
+void CorrectedPicture::approximate() {
+  bare_.clear();
+  if (settings_.approximation && settings_.corrections) layer_.listUncovered(bare_);
+  approximated_.clear();
+  if (bare_.empty()) return;
+  if (!approximation_) approximation_.emplace(scene_, renderer_);
+  {
+    const StageTimer timer(stats_, "probes");
+    approximation_->prepare(*frame_, bare_);
+  }
+  const StageTimer timer(stats_, "approximate");
+  approximation_->at(*frame_, bare_, approximated_);
 }
 
 std::shared_ptr<const core::ImageRgba8> CorrectedPicture::shareDisplay() {
@@ -102,8 +119,11 @@ std::shared_ptr<const core::ImageRgba8> CorrectedPicture::shareDisplay() {
 }
 
 core::ImageRgb CorrectedPicture::linear() {
-  return core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId,
-                               layer_.pixels());
+  core::ImageRgb sum = core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId,
+                                             layer_.pixels());
+  approximate();
+  for (std::size_t i = 0; i < bare_.size(); ++i) sum.at(bare_[i].x, bare_[i].y) += approximated_[i];
+  return sum;
 }
 
 }  // namespace saccade::app

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "app/cli/options.h"
 #include "app/session/stats.h"
@@ -14,6 +15,7 @@
 #include "core/image.h"
 #include "core/scene/scene.h"
 #include "render/base/base_renderer.h"
+#include "render/probe/approximation.h"
 #include "render/splat/correction_layer.h"
 #include "render/splat/sample_cache.h"
 
@@ -30,6 +32,8 @@ struct PictureSettings {
   float exposureEv = 0;
   bool corrections = true;  ///< off: the base layer alone is shown; samples go on being taken
   bool reuse = true;        ///< off: every frame starts without the samples of earlier ones
+  /// Where no splat covers an object, what light probes tell is shown; off: the base layer alone.
+  bool approximation = false;
 
   bool operator==(const PictureSettings&) const = default;
 };
@@ -69,7 +73,8 @@ class CorrectedPicture {
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite
   /// The same for another thread: the next composite goes into another image.
   std::shared_ptr<const core::ImageRgba8> shareDisplay();
-  core::ImageRgb linear();  ///< base + correction as they are now
+  /// Base + correction as they are now, with the approximation where it is on and nothing is corrected yet.
+  core::ImageRgb linear();
   render::CorrectionLayer& layer() { return layer_; }
   const render::CorrectionLayer& layer() const { return layer_; }
   render::SampleCache& cache() { return cache_; }
@@ -81,6 +86,7 @@ class CorrectedPicture {
   bool drawResumed(const core::View& view);
   void warp();
   void showExact();
+  void approximate();
 
   const core::Scene& scene_;
   render::BaseRenderer& renderer_;
@@ -90,6 +96,9 @@ class CorrectedPicture {
   render::SampleCache cache_;
   core::FramePtr frame_, toTrace_;
   std::optional<VisitEnd> resumed_;
+  std::optional<render::Approximation> approximation_;  ///< once it was on
+  std::vector<core::Pixel> bare_;                       ///< without a splat, of the last composite; empty where off
+  std::vector<core::Vec3> approximated_;                ///< of bare_
   std::shared_ptr<core::ImageRgba8> display_;
   bool displayIsShared_ = false;  ///< another thread may be reading display_
 };

@@ -79,7 +79,7 @@ class FrameLoop {
   }
 
   const core::ImageRgba8& display() const { return picture_.display(); }  ///< of the last step
-  core::ImageRgb linear() { return picture_.linear(); }  ///< base + correction of the last step
+  core::ImageRgb linear() { return picture_.linear(); }  ///< what the last step showed
   const core::FrameSnapshot& frame() const { return *picture_.frame(); }
   /// What the picture adds to the base: width * height; valid until the next step.
   std::span<const core::Vec4> corrections() { return picture_.layer().pixels(); }
@@ -111,6 +111,8 @@ class FrameLoop {
   void setDelta(float delta) { picture_.settings().delta = delta; }
   /// Off: the base layer alone is shown; samples go on being traced.
   void showCorrections(bool on) { picture_.settings().corrections = on; }
+  /// What shows where nothing is corrected yet: light probes or the base layer alone.
+  void approximate(bool on) { picture_.settings().approximation = on; }
   /// Off: every frame starts without the samples of earlier ones.
   void reuseSamples(bool on) { picture_.settings().reuse = on; }
   /// The next step draws again although the camera did not move.

@@ -93,6 +93,7 @@ struct BaseRenderer::State {
   std::vector<Visible> order;
   DrawStats stats;
   std::uint32_t idCount;
+  std::uint64_t mapsNumber = 0;
 
   // What GL has bound now, while drawing.
   const Program* boundProgram = nullptr;
@@ -105,13 +106,13 @@ struct BaseRenderer::State {
   void uploadTextures();
   Features shown(Features features) const;
   const Program& program(Features features);
-  void draw(const core::View& view);
+  void draw(const core::View& view, std::span<const char> hidden);
   void beginDraw(const core::View& view);
   void useState(const DrawItem& item, const core::View& view);
   void placeMesh(const DrawItem& item, const core::View& view);
   void bindTexture(TextureUnit unit, const core::TextureSlot& slot);
   void cullBackFaces(bool cull);
-  void sortVisible(const core::View& view);
+  void sortVisible(const core::View& view, std::span<const char> hidden);
 };
 
 void BaseRenderer::State::uploadTextures() {
@@ -228,12 +229,12 @@ void BaseRenderer::State::placeMesh(const DrawItem& item, const core::View& view
 
 /// Near objects first, so that what they hide is not shaded; objects around the camera (rooms) last. Ties
 /// keep the order of `items`. A function of the view alone: so is the image, coplanar surfaces included.
-void BaseRenderer::State::sortVisible(const core::View& view) {
+void BaseRenderer::State::sortVisible(const core::View& view, std::span<const char> hidden) {
   findVisible(scene, view, visible);
   order.clear();
   const core::Vec3 eye = view.camera().eye;
   for (const DrawItem& item : geometry.items()) {
-    if (!visible[item.object]) continue;
+    if (!visible[item.object] || (!hidden.empty() && hidden[item.object])) continue;
     const core::Bounds& bounds = scene.objects[item.object].bounds;
     const core::Vec3 nearest = glm::clamp(eye, bounds.lo, bounds.hi) - eye;
     const float squared = glm::dot(nearest, nearest);
@@ -243,9 +244,9 @@ void BaseRenderer::State::sortVisible(const core::View& view) {
                    [](const Visible& a, const Visible& b) { return a.distanceSquared < b.distanceSquared; });
 }
 
-void BaseRenderer::State::draw(const core::View& view) {
+void BaseRenderer::State::draw(const core::View& view, std::span<const char> hidden) {
   beginDraw(view);
-  sortVisible(view);
+  sortVisible(view, hidden);
   // A solid that the near plane cuts shows its inside.
   const float nearCorner = view.zNear() * glm::length(view.direction({0, 0}));
   for (const Visible& v : order) {
@@ -276,6 +277,7 @@ BaseRenderer::~BaseRenderer() { state_->context.makeCurrent(); }
 void BaseRenderer::setMaps(const core::IlluminationMaps* maps) {
   state_->context.makeCurrent();
   state_->maps = MapTextures();
+  ++state_->mapsNumber;
   if (!maps) return;
   state_->maps = uploadMaps(state_->gl, *maps, state_->context.maxSize());
   checkGl(state_->gl, "uploading the illumination maps");
@@ -286,7 +288,7 @@ std::shared_ptr<core::FrameSnapshot> BaseRenderer::render(const core::View& view
   state_->context.makeCurrent();
   std::shared_ptr<core::FrameSnapshot> frame = state_->pool.take();
   Stopwatch watch;
-  state_->draw(view);
+  state_->draw(view, {});
   state_->gl.Finish();  // reading back would wait for it anyway
   state_->stats.drawSeconds = watch.lap();
   state_->target.read(*frame);
@@ -298,6 +300,20 @@ std::shared_ptr<core::FrameSnapshot> BaseRenderer::render(const core::View& view
   state_->stats.measureSeconds = watch.lap();
   return frame;
 }
+
+core::FramePtr BaseRenderer::renderWithout(const core::View& view, std::span<const char> hidden) {
+  state_->context.makeCurrent();
+  const DrawStats before = state_->stats;
+  auto frame = std::make_shared<core::FrameSnapshot>();  // not the pool's: those are of the picture's size
+  state_->draw(view, hidden);
+  state_->target.read(*frame);
+  checkGl(state_->gl, "drawing a light probe");
+  state_->stats = before;
+  frame->view = view;
+  return frame;
+}
+
+std::uint64_t BaseRenderer::mapsNumber() const { return state_->mapsNumber; }
 
 const DrawStats& BaseRenderer::lastDraw() const { return state_->stats; }
 

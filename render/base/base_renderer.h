@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "core/camera.h"
 #include "core/corrective/messages.h"
@@ -50,6 +51,12 @@ class BaseRenderer {
   /// holds any more are reused; extents are measured with `nMin` (core::measureExtents). Throws core::Error:
   /// an empty size or one beyond the context's limits, GL errors, lost context.
   std::shared_ptr<core::FrameSnapshot> render(const core::View& view, std::uint64_t epoch, int nMin);
+
+  /// The same without the objects whose entry in `hidden` is not 0 (by object; empty = none): what a light
+  /// probe sees. Epoch 0, no extents; lastDraw() stays.
+  core::FramePtr renderWithout(const core::View& view, std::span<const char> hidden);
+  /// Raised by setMaps: what was derived from frames before shows other light.
+  std::uint64_t mapsNumber() const;
 
   const DrawStats& lastDraw() const;
 

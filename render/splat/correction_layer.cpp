@@ -305,6 +305,22 @@ std::uint32_t CorrectionLayer::coveredCount() const {
   return count;
 }
 
+void CorrectionLayer::listUncovered(std::vector<core::Pixel>& pixels) {
+  pixels.clear();
+  for (std::size_t index = 0; index < tiles_.size(); ++index) {
+    TileState& state = states_[index];
+    if (state.floor > 0) continue;
+    const Tile& tile = tiles_[index];
+    state.floor = lowestRank(tile.rank);
+    if (state.floor > 0) continue;
+    const int x0 = static_cast<int>(index) % tilesX_ * kTile, y0 = static_cast<int>(index) / tilesX_ * kTile;
+    for (int i = 0; i < kTile * kTile; ++i) {
+      const int x = i / 4 % (kTile / 2) * 2 + i % 2, y = i / (2 * kTile) * 2 + i / 2 % 2;
+      if (tile.rank[y * kTile + x] == 0) pixels.push_back({x0 + x, y0 + y});
+    }
+  }
+}
+
 std::span<const core::Vec4> CorrectionLayer::pixels() {
   std::size_t tile = 0;
   for (int ty = 0; ty < tilesY_; ++ty) {

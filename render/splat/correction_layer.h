@@ -77,6 +77,10 @@ class CorrectionLayer {
   /// Pixels that show any splat; one pass over the image.
   std::uint32_t coveredCount() const;
 
+  /// The pixels on the mask that show no splat, by aligned blocks of 2 x 2. Tiles that are known to be covered are passed
+  /// over: once all are, a call looks at no pixel.
+  void listUncovered(std::vector<core::Pixel>& pixels);
+
   /// width * height corrections, RGB and w = 0, row 0 = top; zero where nothing covers. Brings the changed
   /// tiles up to date; the span is valid until the next call of a non-const function.
   std::span<const core::Vec4> pixels();
