@@ -14,7 +14,7 @@ namespace saccade::app {
 /// PRAGMA application_id, "Sacc": tells recordings from other databases.
 inline constexpr std::uint32_t kSessionApplicationId = 0x53616363;
 /// PRAGMA user_version. Raised when a reader of the last version would get something wrong.
-inline constexpr int kSessionVersion = 1;
+inline constexpr int kSessionVersion = 2;  ///< 2: the setting `approximation`
 
 extern const char* const kSessionTables;  ///< CREATE TABLE statements
 

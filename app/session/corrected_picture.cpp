@@ -119,8 +119,8 @@ std::shared_ptr<const core::ImageRgba8> CorrectedPicture::shareDisplay() {
 }
 
 core::ImageRgb CorrectedPicture::linear() {
-  core::ImageRgb sum = core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId,
-                                             layer_.pixels());
+  core::ImageRgb sum =
+      core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId, layer_.pixels());
   approximate();
   for (std::size_t i = 0; i < bare_.size(); ++i) sum.at(bare_[i].x, bare_[i].y) += approximated_[i];
   return sum;

@@ -97,8 +97,8 @@ class CorrectedPicture {
   core::FramePtr frame_, toTrace_;
   std::optional<VisitEnd> resumed_;
   std::optional<render::Approximation> approximation_;  ///< once it was on
-  std::vector<core::Pixel> bare_;                       ///< without a splat, of the last composite; empty where off
-  std::vector<core::Vec3> approximated_;                ///< of bare_
+  std::vector<core::Pixel> bare_;         ///< without a splat, of the last composite; empty where off
+  std::vector<core::Vec3> approximated_;  ///< of bare_
   std::shared_ptr<core::ImageRgba8> display_;
   bool displayIsShared_ = false;  ///< another thread may be reading display_
 };

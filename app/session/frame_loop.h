@@ -79,7 +79,7 @@ class FrameLoop {
   }
 
   const core::ImageRgba8& display() const { return picture_.display(); }  ///< of the last step
-  core::ImageRgb linear() { return picture_.linear(); }  ///< what the last step showed
+  core::ImageRgb linear() { return picture_.linear(); }                   ///< what the last step showed
   const core::FrameSnapshot& frame() const { return *picture_.frame(); }
   /// What the picture adds to the base: width * height; valid until the next step.
   std::span<const core::Vec4> corrections() { return picture_.layer().pixels(); }

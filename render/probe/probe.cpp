@@ -41,7 +41,9 @@ void Probe::drawFace(int face, BaseRenderer& renderer, const core::Scene& scene,
                      std::span<const char> hidden) {
   core::Camera camera;
   camera.eye = center_;
-  camera.at = center_ + axis(face / 2, signOf(face));
+  // So far that the sum differs from the centre however far that is from the origin.
+  const float ahead = std::max(scene.bounds.diagonal(), 1e-3f * glm::length(center_));
+  camera.at = center_ + axis(face / 2, signOf(face) * ahead);
   camera.up = axis(face / 2 + 2, 1);
   camera.fovYDegrees = 90;
   const core::View view(camera, kSide, kSide, scene.bounds);
@@ -91,7 +93,8 @@ float Probe::distance(const Vec3& direction) const {
   const Place p = placeOf(direction);
   const int x = std::min(static_cast<int>(p.at.x * kDistances), kDistances - 1);
   const int y = std::min(static_cast<int>(p.at.y * kDistances), kDistances - 1);
-  return distances_[static_cast<std::size_t>((p.face * kDistances + y) * kDistances + x)];
+  const int row = p.face * kDistances + y;
+  return distances_[static_cast<std::size_t>(row) * kDistances + static_cast<std::size_t>(x)];
 }
 
 /// Bilinear within the face.

@@ -31,7 +31,7 @@ class Probe {
 
  private:
   static constexpr int kDistances = kSide / 2;  ///< along a face
-  static constexpr int kLevels = 7;  ///< kSide down to 1
+  static constexpr int kLevels = 7;             ///< kSide down to 1
   static_assert(kSide == 1 << (kLevels - 1));
 
   /// Where a direction points to: a face, and [0, 1]^2 on it.

@@ -94,7 +94,7 @@ TEST(RecordingFaults, WhatIsNoSessionOfThisSceneIsRefusedInOneLine) {
   EXPECT_EQ(refusalOf(goodSession()), "");
   const std::pair<const char*, const char*> cases[] = {
       {"PRAGMA application_id = 1", "no recorded session"},
-      {"PRAGMA user_version = 2", "newer Saccade"},
+      {"PRAGMA user_version = 3", "newer Saccade"},
       {"PRAGMA user_version = 0", "format 0"},
       {"DROP TABLE frames", "no such table"},
       {"DELETE FROM session WHERE name = 'scene'", "has no 'scene'"},

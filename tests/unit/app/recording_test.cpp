@@ -74,7 +74,7 @@ TEST(Recording, SettingsThatChangeAndWindowsThatAreResizedAreReplayed) {
     loop.step(cameraAt(0.1 * (i - i % 2)), size, FrameBudget::firstSamples(300));
   });
   EXPECT_EQ(firstDifference(shown, replayed(file).shown), -1);
-  EXPECT_EQ(tests::askedOf(file, "SELECT count(*) FROM settings WHERE frame = 0"), 9) << "all";
+  EXPECT_EQ(tests::askedOf(file, "SELECT count(*) FROM settings WHERE frame = 0"), 10) << "all";
   EXPECT_EQ(tests::askedOf(file, "SELECT count(*) FROM settings WHERE frame > 0"), 7) << "changes alone";
   EXPECT_EQ(tests::askedOf(file, "SELECT value FROM settings WHERE frame = 12 AND name = 'attention'"), 1);
 }

@@ -2,7 +2,10 @@
 // all samples that cover it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
+#include <random>
+#include <set>
 #include <tuple>
 
 #include "render/splat/correction_layer.h"
@@ -267,6 +270,34 @@ TEST(CorrectionLayer, WarpedSplatsWithCentresOutsideReachIntoTheImage) {
     splat(layer, {s, away, 161, 1, true});
     EXPECT_EQ(layer.coveredCount(), 0u);
   }
+}
+
+// What is asked for in between changes no picture, and the list is what shownAt() says.
+TEST(CorrectionLayer, ListsThePixelsThatShowNoSplat) {
+  const auto frame = maskFrame(150, 93, [](int x, int y) { return x > 20 && y < 80 ? 1u + x / 50u : 0u; });
+  std::mt19937 random(11);
+  std::vector<Sample> samples = latticeSamples(*frame, 7);
+  std::shuffle(samples.begin(), samples.end(), random);
+  CorrectionLayer asked, plain;
+  asked.beginFrame(frame), plain.beginFrame(frame);
+  std::vector<core::Pixel> bare;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    asked.splat(samples[i]), plain.splat(samples[i]);
+    if (i > 100 && i % 500 != 0 && i + 1 < samples.size()) continue;
+    asked.listUncovered(bare);
+    std::set<std::pair<int, int>> listed, truth;
+    for (const auto& [x, y] : bare) listed.emplace(x, y);
+    for (int y = 0; y < asked.height(); ++y) {
+      for (int x = 0; x < asked.width(); ++x) {
+        if (frame->idAt(x, y) != 0 && asked.shownAt(x, y) == nullptr) truth.emplace(x, y);
+      }
+    }
+    ASSERT_EQ(listed, truth);
+    ASSERT_EQ(bare.size(), listed.size());
+  }
+  EXPECT_TRUE(bare.empty());
+  const auto a = asked.pixels(), b = plain.pixels();
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
 }
 
 }  // namespace
