@@ -1,4 +1,5 @@
 // The list of experiments: one line each, in the order in which they run.
+#include "bench/approximation/approximation.h"
 #include "bench/attention/attention.h"
 #include "bench/cache/cache.h"
 #include "bench/growth/growth.h"
@@ -69,6 +70,10 @@ const std::vector<Experiment>& allExperiments() {
        "How valid are the cached samples that aging keeps, and how many valid ones does it drop?",
        {},
        &measureValidity},
+      {"approximation",
+       "How near is what light probes tell to the converged picture, until samples arrive?",
+       {},
+       &measureApproximation},
       {"growth",
        "How do frame time and memory grow with the scene, the cache, the picture and the tracers?",
        {},

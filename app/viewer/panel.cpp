@@ -76,6 +76,8 @@ void drawPicture(PanelState& s, UiItems& items) {
   ImGui::SameLine();
   ImGui::Checkbox("reuse samples", &s.reuse);
   items.note("reuse");
+  ImGui::Checkbox("approximate until corrected", &s.approximation);
+  items.note("approximation");
   if (button("Screenshot", items, "screenshot")) s.screenshotWanted = true;
   ImGui::SameLine();
   if (button("EXR", items, "exr")) s.exrWanted = true;

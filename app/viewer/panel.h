@@ -26,6 +26,7 @@ struct PanelState {
   float delta = 0.1f;
   bool corrections = true;
   bool reuse = true;
+  bool approximation = true;  ///< until the first samples
   std::optional<Aov> overlay;
   float overlayStrength = 1;  ///< over the picture, (0, 1]
   bool loopPath = false;

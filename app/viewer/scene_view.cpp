@@ -91,6 +91,7 @@ void SceneView::applyPanel(const PanelState& panel) {
   loop_.setDelta(panel.delta);
   loop_.showCorrections(panel.corrections);
   loop_.reuseSamples(panel.reuse);
+  loop_.approximate(panel.approximation);
   tools_.setLoop(panel.loopPath);
 }
 

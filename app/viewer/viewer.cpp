@@ -41,6 +41,7 @@ PanelState firstPanel(const WalkOptions& options) {
   panel.fps = static_cast<float>(options.fps);
   panel.exposureEv = options.run.exposureEv;
   panel.delta = options.corrective.delta;
+  panel.approximation = options.corrective.approximation;
   if (!options.overlay.empty()) panel.overlay = aovByName(options.overlay);
   return panel;
 }

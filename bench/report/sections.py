@@ -127,6 +127,9 @@ SECTIONS: dict[str, Section] = {
     "attention": Section(
         "The saliency model", "What does it cost beside plain OpenCV, and does it foretell where people look?", plain
     ),
+    "approximation": Section(
+        "Until an object is corrected", "How near are light probes to the converged picture before samples arrive?", plain
+    ),
     "load": Section(
         "From file to first frame", "Seconds and bytes until the first picture, beside a bare parse of the file.", plain
     ),
