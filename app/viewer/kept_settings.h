@@ -1,0 +1,40 @@
+// What the window keeps between runs: how it was left, and which scenes it showed. In one JSON file,
+// configFolder()/settings.json.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/cli/options.h"
+
+namespace saccade::app {
+
+inline constexpr std::size_t kMostRecent = 10;
+
+/// Nothing: never changed, the program's own default goes.
+struct KeptSettings {
+  std::optional<ImageSize> window;  ///< panel included, while not full screen; as render::Window takes it
+  std::optional<bool> fullscreen;
+  std::optional<bool> panelVisible;
+  std::optional<bool> errorPlotOpen;
+  std::optional<bool> corrections;
+  std::optional<bool> reuse;
+  std::optional<double> attention;   ///< [0, 1]
+  std::optional<double> fps;         ///< [0.1, 1000]
+  std::optional<double> exposureEv;  ///< [-64, 64]
+  std::optional<double> delta;       ///< [0, 2]
+  /// Scene files, absolute, newest first, none twice, kMostRecent at most.
+  std::vector<std::filesystem::path> recent;
+};
+
+/// What saveSettings wrote, less recent files that are gone. What cannot be read is as never changed; one
+/// warning says so. No file: nothing was changed. Main thread.
+KeptSettings loadSettings();
+/// One warning where that fails. Main thread.
+void saveSettings(const KeptSettings& settings);
+
+/// To the front, made absolute.
+void addRecent(KeptSettings& settings, const std::filesystem::path& scene);
+
+}  // namespace saccade::app

@@ -1,0 +1,173 @@
+// What the window keeps between runs.
+#include "app/viewer/kept_settings.h"
+
+#include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tests/unit/core/temporary_folder.h"
+
+namespace saccade::app {
+namespace {
+
+class KeptSettingsFile : public testing::Test {
+ protected:
+  KeptSettingsFile() {
+    if (const char* before = std::getenv("XDG_CONFIG_HOME")) before_ = before;
+    ::setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
+    std::filesystem::create_directories(file_.parent_path());
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(said_)));
+    spdlog::set_pattern("%v");
+  }
+  ~KeptSettingsFile() override {
+    spdlog::set_default_logger(logger_);
+    if (before_) {
+      ::setenv("XDG_CONFIG_HOME", before_->c_str(), 1);
+    } else {
+      ::unsetenv("XDG_CONFIG_HOME");
+    }
+  }
+
+  /// What is read where the file holds this text, and in said_ the warnings.
+  KeptSettings load(const std::string& text) {
+    std::ofstream(file_) << text;
+    said_.str("");
+    return loadSettings();
+  }
+  std::ptrdiff_t warnings() const {
+    const std::string said = said_.str();
+    return std::count(said.begin(), said.end(), '\n');
+  }
+  std::filesystem::path scene(const std::string& name) {
+    const std::filesystem::path file = folder_.path() / name;
+    std::ofstream(file) << "scene";
+    return file;
+  }
+
+  tests::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "saccade" / "settings.json";
+  std::ostringstream said_;
+
+ private:
+  std::optional<std::string> before_;
+  std::shared_ptr<spdlog::logger> logger_ = spdlog::default_logger();
+};
+
+TEST_F(KeptSettingsFile, AllComesBack) {
+  KeptSettings kept;
+  kept.window = ImageSize{1000, 700};
+  kept.fullscreen = true;
+  kept.panelVisible = false;
+  kept.errorPlotOpen = false;
+  kept.corrections = true;
+  kept.reuse = false;
+  kept.attention = 0.1;
+  kept.fps = 30;
+  kept.exposureEv = -1.5;
+  kept.delta = 0.3;
+  addRecent(kept, scene("a.glb"));
+  saveSettings(kept);
+  const KeptSettings back = loadSettings();
+  ASSERT_TRUE(back.window);
+  EXPECT_EQ(back.window->width, 1000);
+  EXPECT_EQ(back.window->height, 700);
+  EXPECT_EQ(back.fullscreen, kept.fullscreen);
+  EXPECT_EQ(back.panelVisible, kept.panelVisible);
+  EXPECT_EQ(back.errorPlotOpen, kept.errorPlotOpen);
+  EXPECT_EQ(back.corrections, kept.corrections);
+  EXPECT_EQ(back.reuse, kept.reuse);
+  EXPECT_EQ(back.attention, kept.attention);
+  EXPECT_EQ(back.fps, kept.fps);
+  EXPECT_EQ(back.exposureEv, kept.exposureEv);
+  EXPECT_EQ(back.delta, kept.delta);
+  EXPECT_EQ(back.recent, kept.recent);
+  EXPECT_EQ(warnings(), 0) << said_.str();
+}
+
+TEST_F(KeptSettingsFile, NothingChangedIsNothingKept) {
+  EXPECT_FALSE(loadSettings().attention);
+  saveSettings({});
+  const KeptSettings back = loadSettings();
+  EXPECT_FALSE(back.window || back.fullscreen || back.panelVisible || back.errorPlotOpen ||
+               back.corrections || back.reuse || back.attention || back.fps || back.exposureEv || back.delta);
+  EXPECT_TRUE(back.recent.empty());
+  EXPECT_EQ(warnings(), 0) << said_.str();
+}
+
+TEST_F(KeptSettingsFile, ForeignAndDamagedOnesAreOneWarning) {
+  for (const char* text : {"", "{", "[]", "null", "7", "{}", R"({"version": 2, "fps": 30})",
+                           R"({"version": "1"})", R"({"version": 1, "fps": 1e999})", "\xff\xfe\0"}) {
+    EXPECT_FALSE(load(text).fps) << text;
+    EXPECT_EQ(warnings(), 1) << text << ": " << said_.str();
+    EXPECT_NE(said_.str().find(file_.string()), std::string::npos) << text;
+  }
+}
+
+TEST_F(KeptSettingsFile, WrongValuesAreLeftOutAndNamedOnce) {
+  const KeptSettings kept = load(R"({"version": 1, "attention": 1.5, "fps": 0, "exposure": null,
+      "delta": "0.1", "panel": 0, "reuse": false, "window": [100, 0], "recent": {}, "corrections": true})");
+  EXPECT_FALSE(kept.attention || kept.fps || kept.exposureEv || kept.delta || kept.panelVisible ||
+               kept.window);
+  EXPECT_EQ(kept.reuse, false);
+  EXPECT_EQ(kept.corrections, true);
+  EXPECT_EQ(warnings(), 1) << said_.str();
+  for (const char* name : {"attention", "fps", "exposure", "delta", "panel", "window", "recent"})
+    EXPECT_NE(said_.str().find(name), std::string::npos) << name;
+  EXPECT_EQ(said_.str().find("corrections"), std::string::npos);
+  for (const char* window :
+       {"[1]", "[1, 2, 3]", "[1.5, 2]", "[40000, 5]", "[1e300, 5]", "\"1x1\"", "[[], 1]"}) {
+    EXPECT_FALSE(load(std::string(R"({"version": 1, "window": )") + window + "}").window) << window;
+    EXPECT_EQ(warnings(), 1) << window;
+  }
+}
+
+TEST_F(KeptSettingsFile, RecentScenesAreNewestFirstWithoutRepeats) {
+  KeptSettings kept;
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < 12; ++i) files.push_back(scene(std::to_string(i) + ".glb"));
+  for (const std::filesystem::path& file : files) addRecent(kept, file);
+  ASSERT_EQ(kept.recent.size(), kMostRecent);
+  EXPECT_EQ(kept.recent.front(), files[11]);
+  EXPECT_EQ(kept.recent.back(), files[2]);
+  addRecent(kept, files[5].parent_path() / "." / files[5].filename());
+  EXPECT_EQ(kept.recent.front(), files[5]);
+  EXPECT_EQ(std::count(kept.recent.begin(), kept.recent.end(), files[5]), 1);
+  saveSettings(kept);
+  std::filesystem::remove(files[7]);
+  std::erase(kept.recent, files[7]);
+  EXPECT_EQ(loadSettings().recent, kept.recent);
+  EXPECT_EQ(warnings(), 0) << said_.str();
+  addRecent(kept, "somewhere.glb");
+  EXPECT_EQ(kept.recent.front(), std::filesystem::current_path() / "somewhere.glb");
+}
+
+TEST_F(KeptSettingsFile, ANameThatIsNoTextIsLeftOut) {
+  KeptSettings kept;
+  addRecent(kept, scene("\xff.glb"));
+  addRecent(kept, scene("good.glb"));
+  saveSettings(kept);
+  const KeptSettings back = loadSettings();
+  ASSERT_EQ(back.recent.size(), 1u);
+  EXPECT_EQ(back.recent.front().filename(), "good.glb");
+}
+
+TEST_F(KeptSettingsFile, AFolderThatCannotBeWrittenIsOneWarning) {
+  std::filesystem::remove_all(file_.parent_path());
+  std::ofstream(file_.parent_path()) << "no folder";
+  saveSettings({});
+  EXPECT_EQ(warnings(), 1) << said_.str();
+  said_.str("");
+  std::filesystem::remove(file_.parent_path());
+  std::filesystem::create_directories(file_);  // a folder of the file's name
+  EXPECT_FALSE(loadSettings().fps);
+  EXPECT_EQ(warnings(), 1) << said_.str();
+}
+
+}  // namespace
+}  // namespace saccade::app
