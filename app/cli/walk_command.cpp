@@ -164,7 +164,15 @@ void addWalkCommand(CLI::App& program, Run& run) {
   o->corrective.approximation = true;  // for people; measurements and stills ask for it
   addCorrectiveOptions(*command, o->corrective);
   addRunOptions(*command, o->run);
-  command->callback([o, &run] { run = [o] { return walk(*o); }; });
+  command->callback([o, command, &run] {
+    const auto given = [command](const char* option) { return command->count(option) > 0; };
+    o->given = {.size = given("--size"),
+                .fps = given("--fps"),
+                .attention = given("--attention"),
+                .exposure = given("--exposure"),
+                .delta = given("--delta")};
+    run = [o] { return walk(*o); };
+  });
 }
 
 }  // namespace saccade::app

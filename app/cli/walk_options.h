@@ -37,6 +37,10 @@ struct WalkOptions {
   std::string uiScreenshot;
   std::optional<double> exitAfterSeconds;
   std::string overlay;
+  /// Said on the command line: goes before what the window kept (app/viewer/window_settings.h).
+  struct Given {
+    bool size = false, fps = false, attention = false, exposure = false, delta = false;
+  } given;
 };
 
 /// What both forms open a scene with.

@@ -16,6 +16,7 @@
 #include "app/viewer/click.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/scene_view.h"
+#include "app/viewer/window_settings.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "render/window/imgui_layer.h"
@@ -35,31 +36,25 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-PanelState firstPanel(const WalkOptions& options) {
-  PanelState panel;
-  panel.attention = static_cast<float>(options.corrective.attention.attention);
-  panel.fps = static_cast<float>(options.fps);
-  panel.exposureEv = options.run.exposureEv;
-  panel.delta = options.corrective.delta;
-  panel.approximation = options.corrective.approximation;
-  if (!options.overlay.empty()) panel.overlay = aovByName(options.overlay);
-  return panel;
-}
-
 /// One window's life, whichever scenes it shows. Members are in the order in which they depend on one
 /// another.
 class Viewer {
  public:
-  Viewer(const WalkOptions& options, const ViewerObserver& afterFrame)
+  Viewer(const WalkOptions& options, const ViewerObserver& afterFrame, KeptSettings kept)
       : options_(options),
         afterFrame_(afterFrame),
-        panel_(firstPanel(options)),
-        window_(options.size.width + kPanelWidth, options.size.height, "Saccade"),
+        kept_(std::move(kept)),
+        panel_(firstPanel(options, kept_)),
+        window_(firstSize(options, kept_).width, firstSize(options, kept_).height, "Saccade"),
         presenter_(window_.context()),
-        imgui_(window_) {}
+        imgui_(window_) {
+    if (kept_.fullscreen && !options.given.size) window_.setFullscreen(*kept_.fullscreen);
+    startLook_ = look();
+  }
 
   void show(std::unique_ptr<const Workspace> workspace) {
     window_.setTitle("Saccade: " + workspace->scene.path);
+    addRecent(kept_, workspace->scene.path);
     scene_.emplace(options_, std::move(workspace), window_);
   }
 
@@ -71,12 +66,24 @@ class Viewer {
       closing_ = !open_ || timeUp || stop.stop_requested();  // one more frame then, for the screenshot
       frame();
     }
+    keepChanges(kept_, startLook_, look());
+    saveSettings(kept_);
     const int status = scene_ ? scene_->end() : 0;
     if (scene_ && !options_.run.statsFile.empty()) writeStats(options_.run.statsFile, scene_->stats());
     return status;
   }
 
  private:
+  /// Panel included.
+  static ImageSize firstSize(const WalkOptions& options, const KeptSettings& kept) {
+    if (kept.window && !options.given.size) return *kept.window;
+    return {options.size.width + kPanelWidth, options.size.height};
+  }
+  WindowLook look() const {
+    const auto [width, height] = window_.windowedSize();
+    return {{width, height}, window_.fullscreen(), panel_};
+  }
+
   void frame() {
     const Clock::time_point start = Clock::now();
     for (const render::Event& event : window_.pollEvents())
@@ -224,10 +231,12 @@ class Viewer {
 
   const WalkOptions& options_;
   const ViewerObserver& afterFrame_;
+  KeptSettings kept_;
   PanelState panel_;
   render::Window window_;
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
+  WindowLook startLook_;
   std::optional<SceneView> scene_;  ///< nothing: none is open
   UiItems items_;
   StageTimes times_;
@@ -240,10 +249,12 @@ class Viewer {
 
 }  // namespace
 
-int runViewer(const WalkOptions& options, const ViewerObserver& afterFrame) {
+int runViewer(const WalkOptions& asked, const ViewerObserver& afterFrame) {
+  KeptSettings kept = loadSettings();
+  const WalkOptions options = withKept(asked, kept);
   auto workspace = openWorkspace(options.scene, bakeOf(options), interruptToken());
   render::setSoftwareRasterThreads(rasterThreads(std::max(1, tracerThreads(options.run))));
-  Viewer viewer(options, afterFrame);
+  Viewer viewer(options, afterFrame, std::move(kept));
   viewer.show(std::move(workspace));
   return viewer.run();
 }

@@ -246,6 +246,12 @@ void Window::setFullscreen(bool on) {
   glfwGetWindowSize(w, &rect[2], &rect[3]);
   glfwSetWindowMonitor(w, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
+std::array<int, 2> Window::windowedSize() const {
+  if (fullscreen()) return {state_->windowedRect[2], state_->windowedRect[3]};
+  std::array<int, 2> size{};
+  glfwGetWindowSize(state_->window.get(), &size[0], &size[1]);
+  return size;
+}
 bool Window::fullscreen() const { return glfwGetWindowMonitor(state_->window.get()) != nullptr; }
 
 void Window::swap() { glfwSwapBuffers(state_->window.get()); }

@@ -2,6 +2,7 @@
 // Main thread only (GLFW's rule), the destructor included. One window at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -86,6 +87,9 @@ class Window {
   bool mouseCaptured() const;
   void setFullscreen(bool on);
   bool fullscreen() const;
+  /// {width, height} that the constructor makes a window of this size from; while full screen the one that
+  /// comes back.
+  std::array<int, 2> windowedSize() const;
   /// Draws go to the window until another framebuffer is bound.
   void bind();
   /// Shows what was drawn.
