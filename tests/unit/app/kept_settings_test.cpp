@@ -2,13 +2,12 @@
 #include "app/viewer/kept_settings.h"
 
 #include <gtest/gtest.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
+#include <optional>
+#include <string>
 
 #include "tests/unit/core/temporary_folder.h"
 
@@ -21,12 +20,12 @@ class KeptSettingsFile : public testing::Test {
     if (const char* before = std::getenv("XDG_CONFIG_HOME")) before_ = before;
     ::setenv("XDG_CONFIG_HOME", folder_.path().c_str(), 1);
     std::filesystem::create_directories(file_.parent_path());
-    spdlog::set_default_logger(
-        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(said_)));
-    spdlog::set_pattern("%v");
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
   }
   ~KeptSettingsFile() override {
-    spdlog::set_default_logger(logger_);
+    testing::internal::GetCapturedStdout();
+    testing::internal::GetCapturedStderr();
     if (before_) {
       ::setenv("XDG_CONFIG_HOME", before_->c_str(), 1);
     } else {
@@ -37,12 +36,16 @@ class KeptSettingsFile : public testing::Test {
   /// What is read where the file holds this text, and in said_ the warnings.
   KeptSettings load(const std::string& text) {
     std::ofstream(file_) << text;
-    said_.str("");
+    forget();
     return loadSettings();
   }
-  std::ptrdiff_t warnings() const {
-    const std::string said = said_.str();
-    return std::count(said.begin(), said.end(), '\n');
+  std::ptrdiff_t warnings() {
+    hear();
+    return std::count(said_.begin(), said_.end(), '\n');
+  }
+  void forget() {
+    hear();
+    said_.clear();
   }
   std::filesystem::path scene(const std::string& name) {
     const std::filesystem::path file = folder_.path() / name;
@@ -52,11 +55,16 @@ class KeptSettingsFile : public testing::Test {
 
   tests::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "saccade" / "settings.json";
-  std::ostringstream said_;
+  std::string said_;  ///< warnings, wherever the log goes
 
  private:
+  void hear() {
+    said_ += testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+  }
+
   std::optional<std::string> before_;
-  std::shared_ptr<spdlog::logger> logger_ = spdlog::default_logger();
 };
 
 TEST_F(KeptSettingsFile, AllComesBack) {
@@ -87,7 +95,7 @@ TEST_F(KeptSettingsFile, AllComesBack) {
   EXPECT_EQ(back.exposureEv, kept.exposureEv);
   EXPECT_EQ(back.delta, kept.delta);
   EXPECT_EQ(back.recent, kept.recent);
-  EXPECT_EQ(warnings(), 0) << said_.str();
+  EXPECT_EQ(warnings(), 0) << said_;
 }
 
 TEST_F(KeptSettingsFile, NothingChangedIsNothingKept) {
@@ -97,15 +105,15 @@ TEST_F(KeptSettingsFile, NothingChangedIsNothingKept) {
   EXPECT_FALSE(back.window || back.fullscreen || back.panelVisible || back.errorPlotOpen ||
                back.corrections || back.reuse || back.attention || back.fps || back.exposureEv || back.delta);
   EXPECT_TRUE(back.recent.empty());
-  EXPECT_EQ(warnings(), 0) << said_.str();
+  EXPECT_EQ(warnings(), 0) << said_;
 }
 
 TEST_F(KeptSettingsFile, ForeignAndDamagedOnesAreOneWarning) {
   for (const char* text : {"", "{", "[]", "null", "7", "{}", R"({"version": 2, "fps": 30})",
                            R"({"version": "1"})", R"({"version": 1, "fps": 1e999})", "\xff\xfe\0"}) {
     EXPECT_FALSE(load(text).fps) << text;
-    EXPECT_EQ(warnings(), 1) << text << ": " << said_.str();
-    EXPECT_NE(said_.str().find(file_.string()), std::string::npos) << text;
+    EXPECT_EQ(warnings(), 1) << text << ": " << said_;
+    EXPECT_NE(said_.find(file_.string()), std::string::npos) << text;
   }
 }
 
@@ -116,10 +124,10 @@ TEST_F(KeptSettingsFile, WrongValuesAreLeftOutAndNamedOnce) {
                kept.window);
   EXPECT_EQ(kept.reuse, false);
   EXPECT_EQ(kept.corrections, true);
-  EXPECT_EQ(warnings(), 1) << said_.str();
+  EXPECT_EQ(warnings(), 1) << said_;
   for (const char* name : {"attention", "fps", "exposure", "delta", "panel", "window", "recent"})
-    EXPECT_NE(said_.str().find(name), std::string::npos) << name;
-  EXPECT_EQ(said_.str().find("corrections"), std::string::npos);
+    EXPECT_NE(said_.find(name), std::string::npos) << name;
+  EXPECT_EQ(said_.find("corrections"), std::string::npos);
   for (const char* window :
        {"[1]", "[1, 2, 3]", "[1.5, 2]", "[40000, 5]", "[1e300, 5]", "\"1x1\"", "[[], 1]"}) {
     EXPECT_FALSE(load(std::string(R"({"version": 1, "window": )") + window + "}").window) << window;
@@ -142,7 +150,7 @@ TEST_F(KeptSettingsFile, RecentScenesAreNewestFirstWithoutRepeats) {
   std::filesystem::remove(files[7]);
   std::erase(kept.recent, files[7]);
   EXPECT_EQ(loadSettings().recent, kept.recent);
-  EXPECT_EQ(warnings(), 0) << said_.str();
+  EXPECT_EQ(warnings(), 0) << said_;
   addRecent(kept, "somewhere.glb");
   EXPECT_EQ(kept.recent.front(), std::filesystem::current_path() / "somewhere.glb");
 }
@@ -161,12 +169,12 @@ TEST_F(KeptSettingsFile, AFolderThatCannotBeWrittenIsOneWarning) {
   std::filesystem::remove_all(file_.parent_path());
   std::ofstream(file_.parent_path()) << "no folder";
   saveSettings({});
-  EXPECT_EQ(warnings(), 1) << said_.str();
-  said_.str("");
+  EXPECT_EQ(warnings(), 1) << said_;
+  forget();
   std::filesystem::remove(file_.parent_path());
   std::filesystem::create_directories(file_);  // a folder of the file's name
   EXPECT_FALSE(loadSettings().fps);
-  EXPECT_EQ(warnings(), 1) << said_.str();
+  EXPECT_EQ(warnings(), 1) << said_;
 }
 
 }  // namespace
