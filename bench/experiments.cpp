@@ -20,6 +20,7 @@
 #include "bench/recording/recording.h"
 #include "bench/still/still.h"
 #include "bench/validity/validity.h"
+#include "bench/walkorder/walk_order.h"
 
 namespace saccade::bench {
 
@@ -37,6 +38,10 @@ const std::vector<Experiment>& allExperiments() {
        "Which order of samples nears the converged picture with the fewest?",
        {Suite::quick, Suite::paper},
        &runOrder},
+      {"walk-order",
+       "Does it pay to correct first what attracts the eye, at 1, 5 and 20 thousand samples a frame?",
+       {Suite::paper},
+       &measureWalkOrder},
       {"rays",
        "How much of bare Embree's speed is left in the corrective loop?",
        {Suite::quick},

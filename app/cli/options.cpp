@@ -11,9 +11,9 @@
 
 namespace saccade::app {
 
-void addSceneOptions(CLI::App& command, SceneOptions& o) {
+CLI::Option* addSceneOptions(CLI::App& command, SceneOptions& o) {
   const std::string group = "Scene";
-  command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
+  CLI::Option* scene = command.add_option("SCENE", o.path, "glTF (.glb, .gltf) or OBJ file")->required();
   std::vector<std::string> qualities;
   for (const raytrace::Quality& q : raytrace::qualities()) qualities.emplace_back(q.name);
   command.add_option("--maps", o.mapsFile, "Illumination map file to use (default: the user's cache folder)")
@@ -87,6 +87,7 @@ void addSceneOptions(CLI::App& command, SceneOptions& o) {
       .add_option("--time", o.load.timeSeconds, "Time in seconds at which the file's animations are shown")
       ->capture_default_str()
       ->group(group);
+  return scene;
 }
 
 void addCameraOptions(CLI::App& command, CameraOptions& o) {
@@ -169,10 +170,12 @@ void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
       ->option_text("NAME [attention]")
       ->group(group);
   command
-      .add_option("--inhibition", o.inhibition,
-                  "Inhibition of return: the share of its priority that an object loses with every level of "
-                  "samples; 0 = winner takes all: the first in the order is corrected until it has converged")
-      ->check(CLI::Range(0.0, 1.0))
+      .add_option(
+          "--inhibition", o.inhibition,
+          "Inhibition of return: the share of its priority that an object loses with each level of "
+          "samples; 0 = winner takes all (the first in the order is corrected until it has converged), "
+          "0.1 = the paper's 10 % rule, 0.9 = level by level, whatever the order")
+      ->check(CLI::Range(0.0, 0.9))
       ->capture_default_str()
       ->group(group);
   command

@@ -17,6 +17,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace saccade::app {
@@ -66,7 +67,8 @@ struct ImageSize {
   int width = 512, height = 512;
 };
 
-void addSceneOptions(CLI::App& command, SceneOptions& options);
+/// Returns the scene file itself, which is required.
+CLI::Option* addSceneOptions(CLI::App& command, SceneOptions& options);
 void addCameraOptions(CLI::App& command, CameraOptions& options);
 void addRunOptions(CLI::App& command, RunOptions& options);
 /// --normalise, --orientation; among addCorrectiveOptions', too.

@@ -12,7 +12,8 @@ namespace {
 
 bool validCamera(const RecordedFrame& frame, const core::Bounds& bounds) {
   try {
-    core::View(frame.camera, frame.size.width, frame.size.height, bounds);
+    const core::View view(frame.camera, frame.size.width, frame.size.height, bounds);
+    static_cast<void>(view);
     return true;
   } catch (const core::Error&) {
     return false;

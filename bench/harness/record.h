@@ -54,6 +54,7 @@ struct Value {
 template <class Repeats, class Get>
 std::vector<double> each(const Repeats& repeats, Get get) {
   std::vector<double> values;
+  values.reserve(repeats.size());
   for (const auto& repeat : repeats) values.push_back(get(repeat));
   return values;
 }

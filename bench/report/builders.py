@@ -35,7 +35,7 @@ _USUAL = {"order": "attention", "cache": "on", "attention": "0.5"}
 _ALONG_A_CURVE = ("scene", "path", "quality")
 
 # Experiments that are measured against something else than the scene's reference.
-_OTHER_TRUTH = ("order", "peers")
+_OTHER_TRUTH = ("order", "walk-order", "peers")
 # Where a record stands on the x axis, with the range of its repeats.
 Place = Callable[[Record], tuple[float, tuple[float, float] | None] | None]
 

@@ -44,6 +44,11 @@ SECTIONS: dict[str, Section] = {
         "Which order of samples nears the converged picture with the fewest?",
         partial(error_against_cost, metrics=_ERRORS, x_label="corrective samples"),
     ),
+    "walk-order": Section(
+        "Orders of samples on a walk",
+        "Does it pay to correct first what attracts the eye, at 1, 5 and 20 thousand samples a frame?",
+        partial(error_against_cost, metrics=("flip_salient", "flip", "rmse"), x_label="new samples a frame"),
+    ),
     "moving": Section(
         "Moving camera",
         "The camera walks a path and every frame has a deadline: how far off are the frames, and are they in time?",

@@ -20,7 +20,7 @@ double KindError::rmse() const { return pixels > 0 ? std::sqrt(squared / (3 * pi
 double KindError::meanFlip() const { return pixels > 0 ? flip / pixels : 0; }
 
 ComparedWalk::ComparedWalk(const Stage& stage, const app::CameraPath& path) : stage_(stage) {
-  const double begin = std::max(0.0, path.lengthSeconds() / 2 - kFrames / 2 * kValidityFrameSeconds);
+  const double begin = std::max(0.0, 0.5 * (path.lengthSeconds() - kFrames * kValidityFrameSeconds));
   const raytrace::CorrectiveTracer tracer(*stage.workspace->world, {.seed = stage.seed});
   for (int i = 0; i < kFrames; ++i) {
     cameras_.push_back(path.at(begin + i * kValidityFrameSeconds));

@@ -49,11 +49,10 @@ bool RegionQueue::later(const Region& a, const Region& b) {
 
 /// One multiplication per level done, so that setPriorities with the values it already has changes no bit.
 float RegionQueue::reducedPriority(const Region& region) const {
-  float priority = basePriority_[region.id];
-  for (int l = frame_->extents[region.id].startLevel; l < region.cursor.level; ++l) {
-    priority *= kept_;
-  }
-  return priority;
+  const float base = basePriority_[region.id];
+  float priority = std::min(base, 1.0f);
+  for (int l = 1; l < region.cursor.level; ++l) priority *= kept_;
+  return priority + std::max(base - 1, 0.0f);
 }
 
 void RegionQueue::beginFrame(FramePtr frame) {
@@ -70,7 +69,8 @@ void RegionQueue::beginFrame(FramePtr frame) {
       if (e.pixels == 0) continue;
       const double boxPerMask = static_cast<double>(e.box.area()) / e.pixels;
       const auto points = static_cast<std::int64_t>(std::llround(jobSize_ * boxPerMask));
-      heap_.push_back({id, basePriority_[id], beginLevel(e.box, e.startLevel), points});
+      heap_.push_back({id, 0, beginLevel(e.box, e.startLevel), points});
+      heap_.back().priority = reducedPriority(heap_.back());
     }
     std::make_heap(heap_.begin(), heap_.end(), later);
   }

@@ -7,7 +7,7 @@
 // or one generation, and every pass reads memory in order.
 //
 // What leaves when the memory is used up: of the oldest age the samples that were traced last. The region
-// queue hands out the most salient work first (priority, a tenth less with each level), so an age's samples
+// queue hands out the most salient work first (priority, less with each level), so an age's samples
 // arrive in the order of their salience; nothing else has to be told to the cache, and a replay drops the
 // same.
 //

@@ -108,8 +108,8 @@ TEST_P(Counts, SamplesToAnError) {
 
 // Relative MSE falls late: a coarse splat that met a lamp's reflection is brighter than all that is right.
 constexpr Cost kCosts[] = {{"cornell.glb", 2246, 9749, {1792, 1808, 2176}, {80, 1360}},
-                           {"table.glb", 2710, 19067, {2160, 2368, 2688}, {240, 2000}},
-                           {"gallery.glb", 5936, 29469, {5504, 5536, 5600}, {2720, 5120}}};
+                           {"table.glb", 2710, 19067, {1440, 2368, 2688}, {240, 1440}},
+                           {"gallery.glb", 5936, 29469, {5776, 5904, 5904}, {1040, 5280}}};
 INSTANTIATE_TEST_SUITE_P(Scenes, Counts, testing::ValuesIn(kCosts));
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 #include <tuple>
 
@@ -133,7 +134,7 @@ TEST(RegionQueue, PrioritiesDecideAndTiesGoToTheSmallerId) {
 }
 
 TEST(RegionQueue, TenPercentRuleMakesEqualObjectsAlternateByLevel) {
-  RegionQueue queue(32);
+  RegionQueue queue(32, 0.1f);
   queue.setPriorities(std::vector<float>{0, 0.8f, 0.8f, 0.01f});
   queue.beginFrame(twoSquares());
   std::vector<std::pair<int, std::uint32_t>> runs;
@@ -141,7 +142,7 @@ TEST(RegionQueue, TenPercentRuleMakesEqualObjectsAlternateByLevel) {
     if (job.id == 3) continue;
     const std::pair<int, std::uint32_t> run{job.begin.level, job.id};
     if (runs.empty() || runs.back() != run) runs.push_back(run);
-    EXPECT_FLOAT_EQ(job.priority, 0.8f * std::pow(0.9f, static_cast<float>(job.begin.level - 4)));
+    EXPECT_FLOAT_EQ(job.priority, 0.8f * std::pow(0.9f, static_cast<float>(job.begin.level - 1)));
   }
   const std::vector<std::pair<int, std::uint32_t>> expected{{4, 1}, {4, 2}, {5, 1}, {5, 2},
                                                             {6, 1}, {6, 2}, {7, 1}, {7, 2}};
@@ -163,18 +164,33 @@ TEST(RegionQueue, WithoutInhibitionTheWinnerTakesAll) {
   for (std::size_t i = 1; i < ids.size(); ++i) EXPECT_GE(priorities[ids[i - 1]], priorities[ids[i]]);
 }
 
-TEST(RegionQueue, FullInhibitionCoversAllBeforeAnySecondLevel) {
-  const auto frame = twoSquares();
-  RegionQueue queue(16, 1);
-  queue.setPriorities(std::vector<float>{0, 0.1f, 1.0f, 0.01f});
+TEST(RegionQueue, StrongInhibitionGoesLevelByLevelThroughAllObjects) {
+  const auto frame = frameOf(120, 80, randomMask(120, 80, 8, 2), 8);
+  RegionQueue queue(16, 0.9f);
+  queue.setPriorities(std::vector<float>{0, 0.2f, 0.9f, 0.3f, 0.4f, 0.5f, 0.6f, 1.0f, 0.8f});
   queue.beginFrame(frame);
-  bool secondLevel = false;
+  int level = 1;
+  std::uint32_t last = 0;
+  const float priorities[] = {0, 0.2f, 0.9f, 0.3f, 0.4f, 0.5f, 0.6f, 1.0f, 0.8f};
   for (const Job& job : drain(queue)) {
-    const bool first = job.begin.level == frame->extents[job.id].startLevel;
-    EXPECT_FALSE(first && secondLevel);
-    secondLevel = secondLevel || !first;
+    EXPECT_GE(job.begin.level, level);
+    if (job.begin.level == level && last != 0) {
+      EXPECT_LE(priorities[job.id], priorities[last]);
+    }
+    level = job.begin.level, last = job.id;
   }
-  EXPECT_TRUE(secondLevel);
+  EXPECT_EQ(level, Lattice::kMaxLevel);
+}
+
+TEST(RegionQueue, WhatExceedsOneIsNotInhibited) {
+  const auto frame = twoSquares();
+  RegionQueue queue(16, 0.9f);
+  queue.setPriorities(std::vector<float>{0, 1, 2, 1});
+  queue.beginFrame(frame);
+  std::size_t pixels = 0;
+  std::optional<Job> job = queue.tryPop();
+  for (; job->id == 2; job = queue.tryPop()) forEachPixel(*job, [&](int, int) { ++pixels; });
+  EXPECT_EQ(pixels, frame->extents[2].pixels) << "all of it before anything of the others";
 }
 
 TEST(RegionQueue, RanksSayWhoIsNext) {
@@ -200,7 +216,11 @@ TEST(RegionQueue, RanksSayWhoIsNext) {
 
 TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
   const auto frame = twoSquares();
-  RegionQueue changed(32), untouched(32);
+  constexpr float kInhibition = 0.1f;
+  const auto reduced = [](float priority, int level) {
+    return priority * std::pow(1 - kInhibition, static_cast<float>(level - 1));
+  };
+  RegionQueue changed(32, kInhibition), untouched(32, kInhibition);
   for (RegionQueue* q : {&changed, &untouched}) {
     q->setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});
     q->beginFrame(frame);
@@ -213,7 +233,7 @@ TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
   for (const Job& job : drain(untouched)) b.push_back(keyOf(job));
   EXPECT_EQ(a, b);
 
-  RegionQueue swapped(32);
+  RegionQueue swapped(32, kInhibition);
   swapped.setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});
   swapped.beginFrame(frame);
   while (swapped.tryPop()->begin.level < 5) {
@@ -221,7 +241,7 @@ TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
   swapped.setPriorities(std::vector<float>{0, 0.5f, 1.0f});  // 3 keeps its own
   const Job next = *swapped.tryPop();
   EXPECT_EQ(next.id, 2u);
-  EXPECT_FLOAT_EQ(next.priority, 1.0f);
+  EXPECT_FLOAT_EQ(next.priority, reduced(1, next.begin.level));
   float ofFirst = 0;
   int firstLevel = 0;
   for (const Job& job : drain(swapped)) {
@@ -229,11 +249,11 @@ TEST(RegionQueue, NewPrioritiesKeepProgressAndReapplyReductions) {
     ofFirst = job.priority, firstLevel = job.begin.level;
   }
   EXPECT_EQ(firstLevel, 5);
-  EXPECT_FLOAT_EQ(ofFirst, 0.5f * 0.9f);
+  EXPECT_FLOAT_EQ(ofFirst, reduced(0.5f, 5));
 }
 
 TEST(RegionQueue, StrangePrioritiesAreTamed) {
-  RegionQueue queue(1000);
+  RegionQueue queue(1000, 0);
   queue.setPriorities(std::vector<float>{0, std::numeric_limits<float>::quiet_NaN(), -3, 70});
   queue.beginFrame(twoSquares());
   const auto jobs = drain(queue);
