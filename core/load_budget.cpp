@@ -55,6 +55,7 @@ bool LoadBudget::timeIsUp() const {
 }
 
 void LoadBudget::checkTime() const {
+  if (limits_.stop.stop_requested()) throw Error(file_ + ": stopped on request");
   if (!timeIsUp()) return;
   std::string seconds = std::to_string(limits_.seconds);
   seconds.erase(seconds.find_last_not_of('0') + 1);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stop_token>
 #include <string>
 
 namespace saccade::core {
@@ -14,6 +15,7 @@ std::uint64_t defaultMaxMemory();
 struct LoadLimits {
   std::uint64_t memoryBytes = defaultMaxMemory();  ///< --max-memory
   double seconds = 300;                            ///< --max-load-seconds
+  std::stop_token stop;                            ///< who asked for the file wants it no more
 };
 
 /// The clock runs from construction. One thread at a time.
@@ -23,7 +25,7 @@ class LoadBudget {
   LoadBudget(const LoadLimits& limits, std::string file);
 
   /// Books `bytes` for `what`, an element of the file (its name may come first) or "". Throws core::Error
-  /// when they are not left, or when the time is up.
+  /// when they are not left, when the time is up or a stop was requested.
   void charge(std::uint64_t bytes, const std::string& what);
   /// `count` things of `bytesEach`; the product may not fit 64 bits.
   void charge(std::uint64_t count, std::uint64_t bytesEach, const std::string& what);
@@ -31,7 +33,8 @@ class LoadBudget {
   void release(std::uint64_t bytes);
 
   bool timeIsUp() const;
-  /// Throws core::Error when the time is up. Cheap enough for every thousandth element.
+  /// Throws core::Error when the time is up or a stop was requested. Cheap enough for every thousandth
+  /// element.
   void checkTime() const;
 
   std::uint64_t used() const { return used_; }

@@ -88,10 +88,26 @@ int walkHeadless(const WalkOptions& o, const Workspace& workspace) {
 
 int walk(const WalkOptions& o) {
   if (!o.headless) return runViewer(o);
+  if (o.scene.path.empty())
+    throw core::UsageError("walk --headless needs a SCENE; only the window opens without");
   return walkHeadless(o, *openWorkspace(o.scene, bakeOf(o), interruptToken()));
 }
 
 }  // namespace
+
+WalkOptions laterVisit(const WalkOptions& first, const std::filesystem::path& scene) {
+  WalkOptions later = first;
+  later.scene = {};
+  later.scene.path = scene.string();
+  later.scene.quality = first.scene.quality;
+  later.scene.mapsMegabytes = first.scene.mapsMegabytes;
+  later.scene.load.limits = first.scene.load.limits;
+  later.camera = {};
+  later.orbit = false;
+  later.path.clear();
+  later.record.clear();
+  return later;
+}
 
 BakeRequest bakeOf(const WalkOptions& o) {
   return {.threads = std::max(1, tracerThreads(o.run)), .seed = o.run.seed};
@@ -127,7 +143,7 @@ void addWalkCommand(CLI::App& program, Run& run) {
   CLI::App* command =
       program.add_subcommand("walk", "Walk through a scene: in a window, or off screen along a path");
   auto o = std::make_shared<WalkOptions>();
-  addSceneOptions(*command, o->scene);
+  addSceneOptions(*command, o->scene)->required(false);
   command->add_flag("--headless", o->headless, "No window: follow a path and report");
   auto* orbit =
       command->add_flag("--orbit", o->orbit, "Circle once around what the camera looks at, in 12 seconds");
@@ -159,6 +175,10 @@ void addWalkCommand(CLI::App& program, Run& run) {
                       "Window: write what it shows when it closes, panel included");
   command->add_option("--exit-after", o->exitAfterSeconds, "Window: close after so many seconds")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--ui-scale", o->uiScale,
+                   "Window: size of letters and panel (default: what the display says)")
+      ->check(CLI::Range(0.5, 4.0));
   command->add_option("--overlay", o->overlay, "Window: overlay to start with: " + aovList());
   addCameraOptions(*command, o->camera);
   o->corrective.approximation = true;  // for people; measurements and stills ask for it

@@ -1,6 +1,7 @@
 // What `saccade walk` was asked for, shared by its two forms.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,11 +38,16 @@ struct WalkOptions {
   std::string uiScreenshot;
   std::optional<double> exitAfterSeconds;
   std::string overlay;
+  std::optional<double> uiScale;  ///< nothing: what the display says
   /// Said on the command line: goes before what the window kept (app/viewer/window_settings.h).
   struct Given {
     bool size = false, fps = false, attention = false, exposure = false, delta = false;
   } given;
 };
+
+/// For another scene in the same window: what was said about the first one itself (how to read it, its maps,
+/// camera, path and recording) does not hold for it.
+WalkOptions laterVisit(const WalkOptions& first, const std::filesystem::path& scene);
 
 /// What both forms open a scene with.
 BakeRequest bakeOf(const WalkOptions& options);

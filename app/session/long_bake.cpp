@@ -89,12 +89,13 @@ std::string howToGoOn(const std::filesystem::path& maps, bool explicitly) {
 }
 
 core::IlluminationMaps bakeLong(raytrace::BakeJob& job, core::SceneCharts charts, const LongBake& bake,
-                                const std::stop_token& stop) {
+                                const std::stop_token& stop, const raytrace::BakeReport& report) {
   resume(job, bake);
   Keeper keeper(job, bake);
   ProgressBar bar("baking");
   const auto show = [&](const raytrace::BakeProgress& p) {
     bar.show(p.fraction, p.secondsLeft, std::string(p.stage));
+    if (report) report(p);
   };
   for (bool done = false; !done;) {
     std::stop_source pause;

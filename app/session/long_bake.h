@@ -28,9 +28,9 @@ struct LongBake {
 
 /// Bakes on from a checkpoint or anew, saying so; writes checkpoints, also when `stop` is requested. A
 /// checkpoint that cannot be written is a warning. Call forgetCheckpoint when the maps are stored. Throws
-/// core::Error when stopped, with how to go on.
+/// core::Error when stopped, with how to go on. `report`, besides the console: as BakeJob::advance has it.
 core::IlluminationMaps bakeLong(raytrace::BakeJob& job, core::SceneCharts charts, const LongBake& bake,
-                                const std::stop_token& stop);
+                                const std::stop_token& stop, const raytrace::BakeReport& report = {});
 
 /// "; the same command goes on from ..." where a checkpoint is there, else nothing. `explicitly`: LongBake.
 std::string howToGoOn(const std::filesystem::path& maps, bool explicitly);

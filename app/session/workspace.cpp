@@ -31,6 +31,11 @@ std::string settingsName(const SceneOptions& options, const BakeRequest& bake) {
   return name;
 }
 
+/// Whether the user said where the maps are or go.
+bool mapsAreNamed(const SceneOptions& options, const BakeRequest& bake) {
+  return !bake.file.empty() || !options.mapsFile.empty();
+}
+
 /// Maps that can be used as they are. A file that the user named is never overwritten when it belongs to
 /// another scene.
 std::optional<core::IlluminationMaps> existingMaps(const std::filesystem::path& file, std::uint64_t key,
@@ -119,15 +124,20 @@ std::string widths(float finest, float coarsest) {
   return least == most ? most + " m" : least + " to " + most + " m";
 }
 
+void tell(const OpeningReport& report, const OpeningStep& step) {
+  if (report) report(step);
+}
+
 /// Charts the scene and builds its world.
 raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
-                                   const std::stop_token& stop) {
+                                   const std::stop_token& stop, const OpeningReport& report) {
+  const auto show = [&](double fraction) { tell(report, {"dividing surfaces into charts", fraction}); };
   raytrace::LightCharts charts = raytrace::chartByLight(w.scene, w.plan,
                                                         {.quality = options.quality,
                                                          .seed = bake.seed,
                                                          .threads = bake.threads,
                                                          .vertexLight = !bake.chartsOnly},
-                                                        {{}, stop});
+                                                        {show, stop});
   w.world = std::move(charts.world);
   const bool refined = raytrace::detailTexelsOf(options.quality, w.plan, charts.atlas.size) > 0;
   if (charts.coarsestMetres > 0) {
@@ -163,7 +173,8 @@ struct Prepared {
 /// Charts the scene so that what did not change stays where it was in earlier maps; finds what need not be
 /// baked again, and says so.
 Prepared chartLikeEarlier(Workspace& w, const EarlierMaps& earlier, const core::SceneState& state,
-                          const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop) {
+                          const SceneOptions& options, const BakeRequest& bake, const std::stop_token& stop,
+                          const OpeningReport& report) {
   const core::SceneState& before = earlier.scene.state;
   const raytrace::SceneMatch match = raytrace::matchScenes(state, before);
   const raytrace::ChangedScene changed{w.scene, state, before, match};
@@ -178,7 +189,7 @@ Prepared chartLikeEarlier(Workspace& w, const EarlierMaps& earlier, const core::
     core::applyCharts(w.scene, out.atlas.charts);
     w.world = std::make_unique<raytrace::World>(w.scene, w.plan);
   } else {
-    out.atlas = chartReported(w, options, bake, stop);
+    out.atlas = chartReported(w, options, bake, stop, report);
     std::optional<raytrace::KeptLayout> layout =
         raytrace::keepLayout(w.scene, out.atlas, match, before.plain, earlier.maps, w.plan.lightmapSize);
     if (!layout) {
@@ -203,7 +214,7 @@ Prepared chartLikeEarlier(Workspace& w, const EarlierMaps& earlier, const core::
 
 core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const SceneOptions& options,
                                const BakeRequest& bake, std::uint64_t key, const raytrace::KeptCharts* kept,
-                               const std::stop_token& stop) {
+                               const std::stop_token& stop, const OpeningReport& report) {
   raytrace::BakeOptions bakeOptions;
   bakeOptions.kept = kept;
   bakeOptions.quality = options.quality;
@@ -219,7 +230,10 @@ core::IlluminationMaps bakeNow(Workspace& w, raytrace::ChartAtlas atlas, const S
   raytrace::BakeJob job(*w.world, atlas.size, bakeOptions);
   const LongBake longBake{mapsPath(key, options, bake), key, bake.resume || !bake.always, bake.always,
                           bake.checkpointEvery};
-  core::IlluminationMaps maps = bakeLong(job, std::move(atlas.charts), longBake, stop);
+  core::IlluminationMaps maps =
+      bakeLong(job, std::move(atlas.charts), longBake, stop, [&](const raytrace::BakeProgress& p) {
+        tell(report, {"computing its light: " + std::string(p.stage), p.fraction, p.secondsLeft});
+      });
   maps.key = key;
   if (maps.clampedTexels > 0)
     spdlog::warn("illumination maps hold at most 65504 W/m^2: {} texels are brighter, {:.3g} W are left out",
@@ -249,46 +263,61 @@ std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options) {
   return w;
 }
 
-std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
-                                         const std::stop_token& stop) {
+namespace {
+
+/// Charts what no maps were found for, and bakes it. What earlier maps hold is used again.
+void bakeMaps(Workspace& w, const SceneOptions& options, const BakeRequest& bake, std::uint64_t key,
+              const std::stop_token& stop, const OpeningReport& report) {
+  const std::filesystem::path file = mapsPath(key, options, bake);
+  if (!bake.always)
+    spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
+                 file.string());
+  if (bake.always) checkWritable(file);
+  const bool plain = bake.importFolder.empty();
+  const core::SceneState state = core::sceneState(w.scene);
+  std::optional<EarlierMaps> earlier;
+  if (plain) earlier = earlierMaps(w.scene, state, settingsName(options, bake));
+  if (earlier && bake.chartsOnly && keepsLightByVertex(earlier->maps.charts)) earlier.reset();
+  Prepared prepared;
+  if (earlier)
+    prepared = chartLikeEarlier(w, *earlier, state, options, bake, stop, report);
+  else
+    prepared.atlas = chartReported(w, options, bake, stop, report);
+  w.maps = bakeNow(w, std::move(prepared.atlas), options, bake, key,
+                   prepared.keeps ? &prepared.change.kept : nullptr, stop, report);
+  w.mapsAreKept = store(file, w.maps, bake, mapsAreNamed(options, bake));
+  if (plain && w.mapsAreKept)
+    rememberMaps(w, state, settingsName(options, bake), file, prepared.change.drift);
+}
+
+}  // namespace
+
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& asked, const BakeRequest& bake,
+                                         const std::stop_token& stop, const OpeningReport& report) {
+  SceneOptions options = asked;
+  options.load.limits.stop = stop;
   auto w = std::make_unique<Workspace>();
+  tell(report, {"reading the scene"});
   w->scene = loadSceneReported(options);
   w->plan = core::makePlan(w->scene, options.mapsMegabytes);
   const std::uint64_t key = core::sceneKey(w->scene);
   const std::filesystem::path file = mapsPath(key, options, bake);
-  const bool namedByUser = !bake.file.empty() || !options.mapsFile.empty();
   std::optional<core::IlluminationMaps> found;
-  if (!bake.always) found = existingMaps(file, key, namedByUser);
+  if (!bake.always) found = existingMaps(file, key, mapsAreNamed(options, bake));
   if (found && bake.chartsOnly && keepsLightByVertex(found->charts)) {
     spdlog::info("{} keeps light by vertex, which glTF cannot hold: baking again", file.string());
     found.reset();
   }
   if (found) {
+    tell(report, {"preparing rays"});
     core::applyCharts(w->scene, found->charts);
     w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
     w->maps = std::move(*found);
     w->mapsWereThere = true;
   } else {
-    if (!bake.always)
-      spdlog::info("no illumination maps for {} yet; baking ({}) into {}", options.path, options.quality,
-                   file.string());
-    if (bake.always) checkWritable(file);
-    const bool plain = bake.importFolder.empty();
-    const core::SceneState state = core::sceneState(w->scene);
-    std::optional<EarlierMaps> earlier;
-    if (plain) earlier = earlierMaps(w->scene, state, settingsName(options, bake));
-    if (earlier && bake.chartsOnly && keepsLightByVertex(earlier->maps.charts)) earlier.reset();
-    Prepared prepared;
-    if (earlier)
-      prepared = chartLikeEarlier(*w, *earlier, state, options, bake, stop);
-    else
-      prepared.atlas = chartReported(*w, options, bake, stop);
-    w->maps = bakeNow(*w, std::move(prepared.atlas), options, bake, key,
-                      prepared.keeps ? &prepared.change.kept : nullptr, stop);
-    w->mapsAreKept = store(file, w->maps, bake, namedByUser);
-    if (plain && w->mapsAreKept)
-      rememberMaps(*w, state, settingsName(options, bake), file, prepared.change.drift);
+    bakeMaps(*w, options, bake, key, stop, report);
   }
+  if (stop.stop_requested()) throw core::Error(options.path + ": stopped on request");
   w->world->setMaps(&w->maps);
   return w;
 }

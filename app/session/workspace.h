@@ -3,12 +3,12 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "app/cli/options.h"
 #include "core/maps.h"
-#include "core/progress.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
 #include "raytrace/world.h"
@@ -41,13 +41,23 @@ struct BakeRequest {
   bool chartsOnly = false;  ///< no light by vertex, for exports; maps with any are baked again
 };
 
+/// What opening a scene is at.
+struct OpeningStep {
+  std::string what;         ///< "reading the scene", "baking: final gathering"
+  double fraction = -1;     ///< done, in [0, 1]; < 0 = not known
+  double secondsLeft = -1;  ///< < 0 = not known
+};
+/// Called on whichever thread does the work.
+using OpeningReport = std::function<void(const OpeningStep&)>;
+
 /// Loads the scene and prints its warnings. Throws core::Error.
 core::Scene loadSceneReported(const SceneOptions& options);
 
-/// Loads, charts, reads or bakes the maps (with a progress bar, saying so) and builds the world. Throws
-/// core::Error. `stop` ends a bake early with an error.
+/// Loads, charts, reads or bakes the maps (with a progress bar on the console, saying so) and builds the
+/// world. Throws core::Error, also where `stop` was requested meanwhile: then with how to go on, if a bake
+/// kept something. Any thread; `report` may be empty.
 std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
-                                         const std::stop_token& stop);
+                                         const std::stop_token& stop, const OpeningReport& report = {});
 
 /// Scene and world without maps: what `path` and `info` need. The world has no maps set.
 std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options);

@@ -101,7 +101,8 @@ void Bookmarks::save() const {
   if (!list.empty()) root["scenes"][scene_] = std::move(list);
   std::error_code failed;
   std::filesystem::create_directories(file_.parent_path(), failed);  // else the writing says why
-  const std::string text = root.dump(2) + '\n';
+  // File names need not be UTF-8, JSON must: such a scene's are not found again.
+  const std::string text = root.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
   core::writeFileAtomically(file_, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 

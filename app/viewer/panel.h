@@ -16,7 +16,7 @@
 
 namespace saccade::app {
 
-inline constexpr int kPanelWidth = 300;  ///< framebuffer pixels
+inline constexpr int kPanelWidth = 300;  ///< framebuffer pixels at a UI scale of 1
 
 /// What the panel changes; the viewer applies it.
 struct PanelState {

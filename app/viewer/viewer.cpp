@@ -1,9 +1,11 @@
 #include "app/viewer/viewer.h"
 
 #include <imgui/imgui.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -15,7 +17,9 @@
 #include "app/session/headless.h"
 #include "app/viewer/click.h"
 #include "app/viewer/panel.h"
+#include "app/viewer/scene_opener.h"
 #include "app/viewer/scene_view.h"
+#include "app/viewer/start_screen.h"
 #include "app/viewer/window_settings.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -30,11 +34,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using render::Key;
 
-constexpr std::chrono::milliseconds kMinimisedPause{20};
+constexpr std::chrono::milliseconds kIdlePause{20};  ///< of frames that show no scene
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+int panelPixels(double uiScale) { return static_cast<int>(std::lround(kPanelWidth * uiScale)); }
 
 /// One window's life, whichever scenes it shows. Members are in the order in which they depend on one
 /// another.
@@ -46,38 +52,37 @@ class Viewer {
         kept_(std::move(kept)),
         panel_(firstPanel(options, kept_)),
         window_(firstSize(options, kept_).width, firstSize(options, kept_).height, "Saccade"),
+        uiScale_(options.uiScale.value_or(window_.contentScale())),
         presenter_(window_.context()),
-        imgui_(window_) {
+        imgui_(window_, static_cast<float>(uiScale_)),
+        opener_([](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report) {
+          return openWorkspace(visit.scene, bakeOf(visit), stop, report);
+        }) {
     if (kept_.fullscreen && !options.given.size) window_.setFullscreen(*kept_.fullscreen);
     startLook_ = look();
-  }
-
-  void show(std::unique_ptr<const Workspace> workspace) {
-    window_.setTitle("Saccade: " + workspace->scene.path);
-    addRecent(kept_, workspace->scene.path);
-    scene_.emplace(options_, std::move(workspace), window_);
+    if (!options.scene.path.empty()) opener_.open(options);
   }
 
   /// Returns the exit status.
   int run() {
     const std::stop_token stop = interruptToken();
     while (!closing_) {
-      const bool timeUp = options_.exitAfterSeconds && secondsSince(start_) >= *options_.exitAfterSeconds;
-      closing_ = !open_ || timeUp || stop.stop_requested();  // one more frame then, for the screenshot
+      closing_ = !open_ || timeIsUp() || stop.stop_requested();  // one more frame then, for the screenshot
       frame();
     }
+    if (const auto outcome = opener_.end()) tell(*outcome);
+    if (scene_ && !options_.run.statsFile.empty()) writeStats(options_.run.statsFile, scene_->stats());
+    endScene();
     keepChanges(kept_, startLook_, look());
     saveSettings(kept_);
-    const int status = scene_ ? scene_->end() : 0;
-    if (scene_ && !options_.run.statsFile.empty()) writeStats(options_.run.statsFile, scene_->stats());
-    return status;
+    return status_;
   }
 
  private:
   /// Panel included.
   static ImageSize firstSize(const WalkOptions& options, const KeptSettings& kept) {
     if (kept.window && !options.given.size) return *kept.window;
-    return {options.size.width + kPanelWidth, options.size.height};
+    return {options.size.width + panelPixels(options.uiScale.value_or(1)), options.size.height};
   }
   WindowLook look() const {
     const auto [width, height] = window_.windowedSize();
@@ -88,10 +93,11 @@ class Viewer {
     const Clock::time_point start = Clock::now();
     for (const render::Event& event : window_.pollEvents())
       std::visit([this](const auto& e) { handle(e); }, event);
+    if (auto outcome = opener_.take()) show(*outcome);
     if (scene_) scene_->moveCamera(!ImGui::GetIO().WantCaptureKeyboard);
     const ImageSize size{window_.width() - panelWidth(), window_.height()};
     if (size.width < 1 || size.height < 1) {  // minimised, or narrower than the panel
-      std::this_thread::sleep_for(kMinimisedPause);
+      std::this_thread::sleep_for(kIdlePause);
     } else {
       drawFrame(size, start);
     }
@@ -99,6 +105,7 @@ class Viewer {
   }
 
   void drawFrame(ImageSize size, Clock::time_point start) {
+    if (!scene_) std::this_thread::sleep_for(kIdlePause);
     const std::chrono::duration<double> budget(1 / panel_.fps - presentSeconds_);
     if (scene_) scene_->step(panel_, size, start + std::chrono::duration_cast<Clock::duration>(budget));
     const Clock::time_point stepped = Clock::now();
@@ -125,7 +132,57 @@ class Viewer {
     if (scene_) scene_->serve(panel_);
   }
 
+  /// Counts from the first scene on, or from there being none to wait for.
+  bool timeIsUp() {
+    if (!scene_ && opener_.state()) start_ = Clock::now();
+    return options_.exitAfterSeconds && secondsSince(start_) >= *options_.exitAfterSeconds;
+  }
+
+  void show(SceneOpener::Outcome& outcome) {
+    if (!outcome.workspace) return tell(outcome);
+    endScene();
+    status_ = 0;
+    const std::string scene = outcome.visit.scene.path;
+    try {
+      scene_.emplace(outcome.visit, std::move(outcome.workspace), window_);
+    } catch (const core::Error& e) {
+      outcome.error = e.what();
+      return tell(outcome);
+    }
+    window_.setTitle("Saccade: " + scene);
+    addRecent(kept_, scene);
+  }
+
+  /// Where there is no scene, the walk that was asked for has failed.
+  void tell(const SceneOpener::Outcome& outcome) {
+    notice_ = outcome.error;
+    spdlog::error("{}", outcome.error);
+    if (!scene_) status_ = 1;
+  }
+
+  void endScene() {
+    if (!scene_) return;
+    status_ = std::max(status_, scene_->end());
+    scene_.reset();
+  }
+
+  void open(const std::filesystem::path& scene) {
+    notice_.clear();
+    opener_.open(laterVisit(options_, scene));
+  }
+
+  void drawOpenings(ImageSize size) {
+    const render::PixelRect area{0, 0, size.width, size.height};
+    const std::optional<SceneOpener::State> opening = opener_.state();
+    if (!scene_ && !opening) {
+      if (const auto chosen = drawStartScreen(kept_.recent, area, items_)) open(*chosen);
+    }
+    if (opening && drawOpening(*opening, area, items_)) opener_.cancel();
+    if (!notice_.empty() && drawNotice(notice_, area, items_)) notice_.clear();
+  }
+
   void drawPanels(ImageSize size) {
+    drawOpenings(size);
     if (!scene_) return;
     const LiveError::State error = scene_->error();
     drawPanel(panel_, {.loop = scene_->loop(),
@@ -147,7 +204,7 @@ class Viewer {
     }
   }
 
-  int panelWidth() const { return panel_.visible ? kPanelWidth : 0; }
+  int panelWidth() const { return scene_ && panel_.visible ? panelPixels(uiScale_) : 0; }
 
   ViewerState state() const {
     ViewerState state{panel_, items_};
@@ -155,6 +212,8 @@ class Viewer {
     state.height = window_.height();
     state.fullscreen = window_.fullscreen();
     state.mouseCaptured = window_.mouseCaptured();
+    if (const auto opening = opener_.state()) state.opening = opening->scene;
+    state.notice = notice_;
     if (scene_) {
       state.scene = scene_->workspace().scene.path;
       state.camera = &scene_->camera();
@@ -225,8 +284,10 @@ class Viewer {
   }
   void handle(const render::CloseEvent&) { open_ = false; }
   void handle(const render::ResizeEvent&) {}  // the size is asked for every frame
-  void handle(const render::DropEvent&) {
-    panel_.message = "to open another scene, start saccade walk with it";
+  void handle(const render::DropEvent& e) {
+    const DroppedScene dropped = chooseDropped(e.files);
+    if (dropped.scene) open(*dropped.scene);
+    notice_ = dropped.message;
   }
 
   const WalkOptions& options_;
@@ -234,10 +295,14 @@ class Viewer {
   KeptSettings kept_;
   PanelState panel_;
   render::Window window_;
+  double uiScale_;  ///< of letters and panel: 1 on a display of about 96 dots an inch
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
   WindowLook startLook_;
+  SceneOpener opener_;
   std::optional<SceneView> scene_;  ///< nothing: none is open
+  std::string notice_;              ///< waits to be read; empty: nothing
+  int status_ = 0;                  ///< of the program
   UiItems items_;
   StageTimes times_;
   ClickDetector leftButton_;
@@ -252,11 +317,8 @@ class Viewer {
 int runViewer(const WalkOptions& asked, const ViewerObserver& afterFrame) {
   KeptSettings kept = loadSettings();
   const WalkOptions options = withKept(asked, kept);
-  auto workspace = openWorkspace(options.scene, bakeOf(options), interruptToken());
   render::setSoftwareRasterThreads(rasterThreads(std::max(1, tracerThreads(options.run))));
-  Viewer viewer(options, afterFrame, std::move(kept));
-  viewer.show(std::move(workspace));
-  return viewer.run();
+  return Viewer(options, afterFrame, std::move(kept)).run();
 }
 
 }  // namespace saccade::app

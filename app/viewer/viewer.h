@@ -6,8 +6,9 @@
 
 namespace saccade::app {
 
-/// Opens the scene and runs until the window is closed. Main thread only. Returns the exit status. Throws
-/// core::Error when there is no display, saying how to walk off screen, and when the scene cannot be opened.
+/// Runs until the window is closed; opens the scene meanwhile, or shows how to open one. Main thread only.
+/// Returns the exit status: 1 where the scene could not be opened, which the window says, or not be recorded.
+/// Throws core::Error when there is no display, saying how to walk off screen.
 int runViewer(const WalkOptions& options, const ViewerObserver& afterFrame = {});
 
 }  // namespace saccade::app

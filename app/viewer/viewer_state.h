@@ -18,6 +18,8 @@ struct ViewerState {
   bool fullscreen = false;
   bool mouseCaptured = false;
   std::string scene;                     ///< path of the open scene; empty: none
+  std::string opening;                   ///< path of the scene that is being opened; empty: none
+  std::string notice;                    ///< waits to be read; empty: none
   const core::Camera* camera = nullptr;  ///< null without a scene
   const FrameLoop* loop = nullptr;       ///< null without a scene; no frame before its first step
 };

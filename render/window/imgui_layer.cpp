@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -37,7 +38,7 @@ void main() { result = color * texture(atlas, uv); }
 }  // namespace
 
 struct ImguiLayer::State {
-  State(GlContext& glContext, Window* onWindow);
+  State(GlContext& glContext, Window* onWindow, float scale);
   ~State();
 
   GlContext& context;
@@ -55,7 +56,9 @@ struct ImguiLayer::State {
   void drawList(const ImDrawList& list, const ImDrawData& data);
 };
 
-ImguiLayer::State::State(GlContext& glContext, Window* onWindow)
+constexpr float kLetterHeight = 13;  ///< pixels at scale 1, that of the library's font
+
+ImguiLayer::State::State(GlContext& glContext, Window* onWindow, float scale)
     : context(glContext),
       gl(glContext.gl()),
       window(onWindow),
@@ -71,6 +74,10 @@ ImguiLayer::State::State(GlContext& glContext, Window* onWindow)
   io.IniFilename = nullptr;  // nothing is written beside the user's files
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.BackendRendererName = "saccade";
+  ImFontConfig font;
+  font.SizePixels = std::round(kLetterHeight * scale);  // drawn at its size, not stretched
+  io.Fonts->AddFontDefault(&font);
+  ImGui::GetStyle().ScaleAllSizes(scale);
   uploadAtlas();
   describeVertices();
   if (window) ImGui_ImplGlfw_InitForOpenGL(window->handle(), true);
@@ -153,13 +160,13 @@ void ImguiLayer::State::drawList(const ImDrawList& list, const ImDrawData& data)
   }
 }
 
-ImguiLayer::ImguiLayer(Window& window) {
+ImguiLayer::ImguiLayer(Window& window, float scale) {
   window.context().makeCurrent();
-  state_ = std::make_unique<State>(window.context(), &window);
+  state_ = std::make_unique<State>(window.context(), &window, scale);
 }
 ImguiLayer::ImguiLayer(GlContext& context) {
   context.makeCurrent();
-  state_ = std::make_unique<State>(context, nullptr);
+  state_ = std::make_unique<State>(context, nullptr, 1.0f);
 }
 ImguiLayer::~ImguiLayer() { state_->context.makeCurrent(); }
 

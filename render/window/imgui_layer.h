@@ -14,7 +14,8 @@ namespace saccade::render {
 class ImguiLayer {
  public:
   /// On a window: create it after the window's first use of events or before, both work; destroy it first.
-  explicit ImguiLayer(Window& window);
+  /// `scale`: of letters and all that is measured by them, > 0.
+  explicit ImguiLayer(Window& window, float scale = 1);
   /// Off screen, without input.
   explicit ImguiLayer(GlContext& context);
   ~ImguiLayer();

@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -229,6 +230,12 @@ void Window::setMouseCaptured(bool captured) {
 }
 bool Window::mouseCaptured() const {
   return glfwGetInputMode(state_->window.get(), GLFW_CURSOR) == GLFW_CURSOR_DISABLED;
+}
+
+float Window::contentScale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(state_->window.get(), &x, &y);
+  return std::clamp(std::max(x, y), 0.5f, 4.0f);
 }
 
 void Window::setFullscreen(bool on) {

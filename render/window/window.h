@@ -79,6 +79,9 @@ class Window {
 
   int width() const;   ///< framebuffer pixels
   int height() const;  ///< framebuffer pixels
+  /// How much larger than usual letters should be for the display the window is on: 1 at about 96 dots an
+  /// inch.
+  float contentScale() const;
   void setTitle(const std::string& title);
   /// Swap waits for the display's refresh; off at first (the frame loop has its own clock).
   void setVsync(bool on);

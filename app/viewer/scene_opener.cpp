@@ -1,0 +1,88 @@
+#include "app/viewer/scene_opener.h"
+
+#include <exception>
+#include <utility>
+
+namespace saccade::app {
+
+SceneOpener::SceneOpener(Open open)
+    : open_(std::move(open)), thread_([this](const std::stop_token& end) { work(end); }) {}
+
+SceneOpener::~SceneOpener() { end(); }
+
+void SceneOpener::open(const WalkOptions& visit) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (current_) cancel_.request_stop();
+    next_ = visit;
+    outcome_.reset();
+  }
+  asked_.notify_one();
+}
+
+void SceneOpener::cancel() {
+  const std::lock_guard lock(mutex_);
+  next_.reset();
+  if (!current_) return;
+  current_->cancelled = true;
+  cancel_.request_stop();
+}
+
+std::optional<SceneOpener::State> SceneOpener::state() const {
+  const std::lock_guard lock(mutex_);
+  if (next_) return State{next_->scene.path, {"waiting for the scene before"}, false};
+  return current_;
+}
+
+std::optional<SceneOpener::Outcome> SceneOpener::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(outcome_, std::nullopt);
+}
+
+std::optional<SceneOpener::Outcome> SceneOpener::end() {
+  cancel();
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+  return take();
+}
+
+void SceneOpener::work(const std::stop_token& end) {
+  for (;;) {
+    WalkOptions visit;
+    std::stop_token stop;
+    {
+      std::unique_lock lock(mutex_);
+      if (!asked_.wait(lock, end, [this] { return next_.has_value(); })) return;
+      visit = *std::exchange(next_, std::nullopt);
+      cancel_ = std::stop_source();
+      stop = cancel_.get_token();
+      current_ = State{visit.scene.path, {"starting"}, false};
+    }
+    Outcome outcome = openNow(visit, stop);
+    const std::lock_guard lock(mutex_);
+    current_.reset();
+    if (!next_) outcome_ = std::move(outcome);
+  }
+}
+
+SceneOpener::Outcome SceneOpener::openNow(const WalkOptions& visit, const std::stop_token& stop) {
+  Outcome outcome;
+  outcome.visit = visit;
+  try {
+    outcome.workspace = open_(visit, stop, [this](const OpeningStep& step) {
+      const std::lock_guard lock(mutex_);
+      current_->step = step;
+    });
+  } catch (const std::exception& e) {
+    outcome.error = e.what();
+  }
+  outcome.cancelled = stop.stop_requested();
+  // Done in spite of the wish: the person has turned to something else.
+  if (outcome.cancelled && outcome.workspace) {
+    outcome.workspace.reset();
+    outcome.error = "stopped on request";
+  }
+  return outcome;
+}
+
+}  // namespace saccade::app

@@ -1,0 +1,69 @@
+// Opens scenes on a thread of its own, so that the window stays alive while a scene is read and its light
+// computed.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "app/cli/walk_options.h"
+#include "app/session/workspace.h"
+
+namespace saccade::app {
+
+/// One scene at a time; the last one asked for counts. The owner's thread only, unless a line says otherwise.
+class SceneOpener {
+ public:
+  /// Opens a scene: openWorkspace with what belongs to it. Called on the opener's thread.
+  using Open = std::function<std::unique_ptr<const Workspace>(
+      const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report)>;
+
+  /// What is under way.
+  struct State {
+    std::string scene;  ///< path
+    OpeningStep step;
+    bool cancelled = false;  ///< it ends as soon as it can
+  };
+  /// What became of a scene: one of the two.
+  struct Outcome {
+    WalkOptions visit;
+    std::unique_ptr<const Workspace> workspace;
+    std::string error;       ///< one line
+    bool cancelled = false;  ///< `error` says how to go on, no more
+  };
+
+  explicit SceneOpener(Open open);
+  /// Cancels and waits: a stop is looked at in every stage, but for the building of the world.
+  ~SceneOpener();
+
+  /// Cancels what is under way, and opens this next.
+  void open(const WalkOptions& visit);
+  /// What is under way ends with an outcome that says so; a bake keeps what it has. Nothing waits.
+  void cancel();
+  /// Nothing: idle. Any thread.
+  std::optional<State> state() const;
+  /// Each outcome once, in the order of the calls of open; one that was overtaken by a later call has none.
+  std::optional<Outcome> take();
+  /// Cancels, waits, and returns what was not taken. Nothing can be opened afterwards.
+  std::optional<Outcome> end();
+
+ private:
+  void work(const std::stop_token& end);
+  Outcome openNow(const WalkOptions& visit, const std::stop_token& stop);
+
+  const Open open_;
+  mutable std::mutex mutex_;  ///< of what follows
+  std::condition_variable_any asked_;
+  std::optional<WalkOptions> next_;
+  std::optional<State> current_;
+  std::stop_source cancel_;  ///< of the current one
+  std::optional<Outcome> outcome_;
+  std::jthread thread_;  ///< last: joined before anything it uses goes
+};
+
+}  // namespace saccade::app
