@@ -54,6 +54,7 @@ void writeStats(const std::filesystem::path& file, const RunStats& s) {
   json["stages_ms"] = s.stageMs;
   json["peak_bytes"] = peakBytes();
   json["converged"] = s.converged;
+  if (s.firstFrameMs > 0) json["first_frame_ms"] = s.firstFrameMs;
   json["seed"] = s.seed;
   json["threads"] = s.threads;
   json["context"] = s.context;

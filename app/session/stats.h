@@ -28,6 +28,8 @@ struct RunStats {
   double tracingSeconds = 0;              ///< wall time in which rays were traced
   std::map<std::string, double> stageMs;  ///< summed over frames
   bool converged = false;
+  double firstFrameMs =
+      0;  ///< window: from the program's start until a scene's first picture was shown; 0 = none was
   std::uint32_t seed = 1;
   int threads = 0;
   std::string context, renderer;

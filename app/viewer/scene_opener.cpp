@@ -1,6 +1,7 @@
 #include "app/viewer/scene_opener.h"
 
 #include <exception>
+#include <filesystem>
 #include <utility>
 
 namespace saccade::app {
@@ -82,6 +83,9 @@ SceneOpener::Outcome SceneOpener::openNow(const WalkOptions& visit, const std::s
     outcome.workspace.reset();
     outcome.error = "stopped on request";
   }
+  const std::string name = std::filesystem::path(visit.scene.path).filename().string();
+  if (!outcome.error.empty() && outcome.error.find(name) == std::string::npos)
+    outcome.error = name + ": " + outcome.error;
   return outcome;
 }
 

@@ -32,6 +32,9 @@ namespace saccade::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Before main, after the libraries were loaded.
+const Clock::time_point kProgramStart = Clock::now();
 using render::Key;
 
 constexpr std::chrono::milliseconds kIdlePause{20};  ///< of frames that show no scene
@@ -71,7 +74,11 @@ class Viewer {
       frame();
     }
     if (const auto outcome = opener_.end()) tell(*outcome);
-    if (scene_ && !options_.run.statsFile.empty()) writeStats(options_.run.statsFile, scene_->stats());
+    if (scene_ && !options_.run.statsFile.empty()) {
+      RunStats stats = scene_->stats();
+      stats.firstFrameMs = firstFrameMs_;
+      writeStats(options_.run.statsFile, stats);
+    }
     endScene();
     keepChanges(kept_, startLook_, look());
     saveSettings(kept_);
@@ -129,6 +136,7 @@ class Viewer {
       core::writePng(options_.uiScreenshot, window_.screenshot());
     if (std::exchange(panel_.screenshotWanted, false) && scene_) saveScreenshot(shown);
     window_.swap();
+    if (scene_ && firstFrameMs_ == 0) firstFrameMs_ = 1000 * secondsSince(kProgramStart);
     if (scene_) scene_->serve(panel_);
   }
 
@@ -156,7 +164,7 @@ class Viewer {
   /// Where there is no scene, the walk that was asked for has failed.
   void tell(const SceneOpener::Outcome& outcome) {
     notice_ = outcome.error;
-    spdlog::error("{}", outcome.error);
+    spdlog::log(outcome.cancelled && scene_ ? spdlog::level::info : spdlog::level::err, "{}", outcome.error);
     if (!scene_) status_ = 1;
   }
 
@@ -217,6 +225,7 @@ class Viewer {
     if (scene_) {
       state.scene = scene_->workspace().scene.path;
       state.camera = &scene_->camera();
+      state.tools = &scene_->tools();
       state.loop = &scene_->loop();
     }
     return state;
@@ -303,6 +312,7 @@ class Viewer {
   std::optional<SceneView> scene_;  ///< nothing: none is open
   std::string notice_;              ///< waits to be read; empty: nothing
   int status_ = 0;                  ///< of the program
+  double firstFrameMs_ = 0;
   UiItems items_;
   StageTimes times_;
   ClickDetector leftButton_;

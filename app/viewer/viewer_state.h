@@ -21,6 +21,7 @@ struct ViewerState {
   std::string opening;                   ///< path of the scene that is being opened; empty: none
   std::string notice;                    ///< waits to be read; empty: none
   const core::Camera* camera = nullptr;  ///< null without a scene
+  const SceneTools* tools = nullptr;     ///< null without a scene
   const FrameLoop* loop = nullptr;       ///< null without a scene; no frame before its first step
 };
 

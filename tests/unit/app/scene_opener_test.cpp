@@ -96,7 +96,7 @@ TEST(SceneOpener, CancelEndsWhatIsUnderWayWithItsReason) {
   opener.cancel();
   const SceneOpener::Outcome outcome = outcomeOf(opener);
   EXPECT_TRUE(outcome.cancelled);
-  EXPECT_EQ(outcome.error, "stopped on request");
+  EXPECT_EQ(outcome.error, "a.glb: stopped on request");
   EXPECT_FALSE(opener.state());
 }
 
