@@ -75,7 +75,11 @@ FrameBudget budgetOf(const RenderOptions& o) {
 RunStats renderCorrective(const RenderOptions& o, const Workspace& workspace, Headless& gl,
                           const core::Camera& camera) {
   FrameLoop loop(workspace, *gl.renderer,
-                 {o.corrective, tracerThreads(o.run), o.run.seed, o.run.exposureEv, false});
+                 {.corrective = o.corrective,
+                  .threads = tracerThreads(o.run),
+                  .seed = o.run.seed,
+                  .exposureEv = o.run.exposureEv,
+                  .probesAFrame = render::Approximation::kMostProbes});
   loop.step(camera, o.size, budgetOf(o), interruptToken());
   if (o.aov.empty()) {
     writeLinear(o, loop.linear());

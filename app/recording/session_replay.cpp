@@ -76,6 +76,7 @@ bool SessionReplay::show(const RecordedFrame& frame) {
     picture_->take(*batch);
   }
   if (!session_.frameIsWhole()) return false;
+  picture_->drawProbes();
   picture_->composite();
   return true;
 }

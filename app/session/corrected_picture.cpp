@@ -7,11 +7,12 @@
 namespace saccade::app {
 
 CorrectedPicture::CorrectedPicture(const core::Scene& scene, render::BaseRenderer& renderer,
-                                   const PictureSettings& settings, RunStats& stats)
+                                   const PictureSettings& settings, RunStats& stats, std::size_t probesAFrame)
     : scene_(scene),
       renderer_(renderer),
       settings_(settings),
       stats_(stats),
+      probesAFrame_(probesAFrame),
       cache_(static_cast<std::size_t>(settings.cacheMb) << 20) {}
 
 bool CorrectedPicture::shows(const core::Camera& camera, ImageSize size) const {
@@ -98,17 +99,25 @@ void CorrectedPicture::composite() {
   core::compositeDisplayAt(bare_, frame_->baseAndId, approximated_, settings_.exposureEv, *display_);
 }
 
-/// What is bare now, and what stands in for its corrections.
-void CorrectedPicture::approximate() {
+void CorrectedPicture::listBare() {
   bare_.clear();
   if (settings_.approximation && settings_.corrections) layer_.listUncovered(bare_);
-  approximated_.clear();
+}
+
+void CorrectedPicture::drawProbes() {
+  listBare();
   if (bare_.empty()) return;
   if (!approximation_) approximation_.emplace(scene_, renderer_);
-  {
-    const StageTimer timer(stats_, "probes");
-    approximation_->prepare(*frame_, bare_);
-  }
+  const StageTimer timer(stats_, "probes");
+  approximation_->prepare(*frame_, bare_, probesAFrame_);
+}
+
+/// What stands in for the corrections of what is bare now.
+void CorrectedPicture::approximate() {
+  listBare();
+  approximated_.clear();
+  if (!approximation_) bare_.clear();  // no probe is drawn yet
+  if (bare_.empty()) return;
   const StageTimer timer(stats_, "approximate");
   approximation_->at(*frame_, bare_, approximated_);
 }

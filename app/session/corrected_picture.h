@@ -41,8 +41,12 @@ struct PictureSettings {
 /// Main thread only. Counts and times go to `stats`.
 class CorrectedPicture {
  public:
+  /// A walk draws few light probes a frame, so that its first ones do not take long; a replay must draw as
+  /// many.
+  static constexpr std::size_t kProbesAFrame = 2;
+
   CorrectedPicture(const core::Scene& scene, render::BaseRenderer& renderer, const PictureSettings& settings,
-                   RunStats& stats);
+                   RunStats& stats, std::size_t probesAFrame = kProbesAFrame);
 
   PictureSettings& settings() { return settings_; }
   const PictureSettings& settings() const { return settings_; }
@@ -64,6 +68,9 @@ class CorrectedPicture {
   /// wait in the cache for the next camera change (design fact 6). No batch may be of a later epoch than the
   /// frame's.
   void take(const core::SampleBatch& batch);
+  /// Once a frame, before its last composite: light probes for what no splat covers, a few at a time. Nothing
+  /// else draws any, for a replay has the same frames and no more.
+  void drawProbes();
   /// Step 7.
   void composite();
 
@@ -86,12 +93,14 @@ class CorrectedPicture {
   bool drawResumed(const core::View& view);
   void warp();
   void showExact();
+  void listBare();
   void approximate();
 
   const core::Scene& scene_;
   render::BaseRenderer& renderer_;
   PictureSettings settings_;
   RunStats& stats_;
+  const std::size_t probesAFrame_;
   render::CorrectionLayer layer_;
   render::SampleCache cache_;
   core::FramePtr frame_, toTrace_;

@@ -33,7 +33,7 @@ FrameLoop::FrameLoop(const Workspace& workspace, render::BaseRenderer& renderer,
       regions_(options.corrective.jobSize, options.corrective.inhibition),
       tracer_(*workspace.world,
               {.seed = options.seed, .samplesPerPixel = options.corrective.samplesPerPixel}),
-      picture_(workspace.scene, renderer, settingsOf(options), stats_),
+      picture_(workspace.scene, renderer, settingsOf(options), stats_, options.probesAFrame),
       analyzer_(seeded(options.corrective.attention, options.seed)),
       pool_(tracer_, regions_, samples_, options.threads, options.corrective.aging == AgingTest::change) {
   stats_.seed = options.seed;
@@ -66,6 +66,7 @@ void FrameLoop::step(const core::Camera& camera, ImageSize size, const FrameBudg
   }
   const Clock::time_point tail = Clock::now();
   const double probesBefore = stats_.stageMs["probes"];
+  picture_.drawProbes();
   picture_.composite();
   feedAnalyzer();
   record(newView);

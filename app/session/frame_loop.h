@@ -54,6 +54,8 @@ struct FrameLoopOptions {
   /// An analyzer thread follows the walk; else each new frame is analysed before it is corrected (still
   /// pictures, inline runs), which makes the schedule a function of the frame alone.
   bool asynchronousAnalysis = false;
+  /// Another number than a walk's cannot be replayed. For stills, which have one frame only.
+  std::size_t probesAFrame = CorrectedPicture::kProbesAFrame;
 };
 
 /// Main thread only: it owns the GL context, the camera, the correction layer and the sample cache.

@@ -76,6 +76,7 @@ class SceneRun {
     o.threads = stage_->tracers;
     o.seed = stage_->seed;
     o.corrective.approximation = approximation;
+    o.probesAFrame = render::Approximation::kMostProbes;
     return o;
   }
 

@@ -178,15 +178,23 @@ std::size_t Approximation::probesMade() const {
       std::count_if(places_.begin(), places_.end(), [](const Place& p) { return p.probe != nullptr; }));
 }
 
-void Approximation::prepare(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels) {
+void Approximation::prepare(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels,
+                            std::size_t atMost) {
   if (mapsNumber_ != renderer_.mapsNumber()) {
     mapsNumber_ = renderer_.mapsNumber();
     for (Place& place : places_) place.probe.reset();
   }
+  std::vector<std::size_t> wanted(places_.size(), 0);  // pixels
   for (const core::Pixel& pixel : pixels) {
-    Place& place = places_[placeOf_[frame.idAt(pixel.x, pixel.y)]];
-    if (!place.probe)
-      place.probe = std::make_unique<Probe>(renderer_, scene_, place.center, hiddenFrom(place.center));
+    const std::size_t place = placeOf_[frame.idAt(pixel.x, pixel.y)];
+    if (!places_[place].probe) ++wanted[place];
+  }
+  for (; atMost > 0; --atMost) {
+    const auto most = std::max_element(wanted.begin(), wanted.end());
+    if (most == wanted.end() || *most == 0) return;
+    *most = 0;
+    Place& place = places_[static_cast<std::size_t>(most - wanted.begin())];
+    place.probe = std::make_unique<Probe>(renderer_, scene_, place.center, hiddenFrom(place.center));
   }
 }
 
@@ -201,11 +209,16 @@ void Approximation::at(const core::FrameSnapshot& frame, std::span<const core::P
   std::uint32_t lastId = 0;
   for (const core::Pixel& pixel : pixels) {
     const std::uint32_t id = frame.idAt(pixel.x, pixel.y);
+    const Probe* probe = places_[placeOf_[id]].probe.get();
+    if (!probe) {
+      corrections.emplace_back(0.0f);
+      continue;
+    }
     if (id != lastId || pixel.x / 2 != last.x / 2 || pixel.y / 2 != last.y / 2) {
       const Vec3 point = points.at(pixel.x, pixel.y);
       const Vec3 direction = glm::normalize(point - eye);
       const Vec3 normal = points.normal(pixel.x, pixel.y, point, -direction);
-      glanced = glance(glances_[id], *places_[placeOf_[id]].probe, point, normal, direction);
+      glanced = glance(glances_[id], *probe, point, normal, direction);
       last = pixel;
       lastId = id;
     }

@@ -26,12 +26,13 @@ class Approximation {
 
   Approximation(const core::Scene& scene, BaseRenderer& renderer);
 
-  /// Draws the probes that at() will need and that are not there yet: 1 to 5 ms each. Throws as
-  /// BaseRenderer::render.
-  void prepare(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels);
-  /// corrections[i] is about what a sample of pixels[i] would be; after prepare() with the same. All of them
-  /// must be on the frame's mask. Pixels of one object in an aligned block of 2 x 2 that follow one another
-  /// share the probe's light: a quarter of the time at hardly another error.
+  /// Draws probes that at() will need and that are not there yet, those of most pixels first, as many as are
+  /// allowed: 1 to 20 ms each. Throws as BaseRenderer::render.
+  void prepare(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels,
+               std::size_t atMost = kMostProbes);
+  /// corrections[i] is about what a sample of pixels[i] would be, 0 where its probe was not drawn yet. All of
+  /// them must be on the frame's mask. Pixels of one object in an aligned block of 2 x 2 that follow one
+  /// another share the probe's light: a quarter of the time at hardly another error.
   void at(const core::FrameSnapshot& frame, std::span<const core::Pixel> pixels,
           std::vector<core::Vec3>& corrections) const;
 

@@ -46,7 +46,9 @@ double maskedError(const core::FrameSnapshot& frame, const core::ImageRgb& truth
 void expectNearer(const std::filesystem::path& scene, double atMost) {
   const app::Workspace& workspace = tests::workspaceOf(scene);
   const app::Headless gl(tests::runOn("osmesa"), workspace);
-  FrameLoop loop(workspace, *gl.renderer, with(true));
+  app::FrameLoopOptions options = with(true);
+  options.probesAFrame = render::Approximation::kMostProbes;
+  FrameLoop loop(workspace, *gl.renderer, options);
   loop.step(workspace.scene.cameras.at(0), kSize, FrameBudget::firstSamples(0));
   const core::ImageRgb truth = tests::rayTraced(workspace, loop.frame());
   const core::ImageRgb base = core::compositeLinear(kSize.width, kSize.height, loop.frame().baseAndId, {});
