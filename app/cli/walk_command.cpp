@@ -190,7 +190,8 @@ void addWalkCommand(CLI::App& program, Run& run) {
                 .fps = given("--fps"),
                 .attention = given("--attention"),
                 .exposure = given("--exposure"),
-                .delta = given("--delta")};
+                .delta = given("--delta"),
+                .approximation = given("--approximation")};
     run = [o] { return walk(*o); };
   });
 }

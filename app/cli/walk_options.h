@@ -41,7 +41,7 @@ struct WalkOptions {
   std::optional<double> uiScale;  ///< nothing: what the display says
   /// Said on the command line: goes before what the window kept (app/viewer/window_settings.h).
   struct Given {
-    bool size = false, fps = false, attention = false, exposure = false, delta = false;
+    bool size = false, fps = false, attention = false, exposure = false, delta = false, approximation = false;
   } given;
 };
 

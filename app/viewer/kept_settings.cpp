@@ -35,6 +35,7 @@ void forEachSwitch(Settings& s, const Visit& visit) {
   visit("error_plot", s.errorPlotOpen);
   visit("corrections", s.corrections);
   visit("reuse", s.reuse);
+  visit("approximation", s.approximation);
 }
 
 /// Reads one value after another and collects the names of those that are wrong.

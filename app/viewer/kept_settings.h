@@ -20,6 +20,7 @@ struct KeptSettings {
   std::optional<bool> errorPlotOpen;
   std::optional<bool> corrections;
   std::optional<bool> reuse;
+  std::optional<bool> approximation;
   std::optional<double> attention;   ///< [0, 1]
   std::optional<double> fps;         ///< [0.1, 1000]
   std::optional<double> exposureEv;  ///< [-64, 64]

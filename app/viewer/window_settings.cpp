@@ -19,6 +19,7 @@ void keep(std::optional<Kept>& kept, const T& start, const T& end) {
 WalkOptions withKept(WalkOptions o, const KeptSettings& kept) {
   apply(o.corrective.attention.attention, kept.attention, o.given.attention);
   apply(o.corrective.delta, kept.delta, o.given.delta);
+  apply(o.corrective.approximation, kept.approximation, o.given.approximation);
   apply(o.fps, kept.fps, o.given.fps);
   apply(o.run.exposureEv, kept.exposureEv, o.given.exposure);
   return o;
@@ -48,6 +49,7 @@ void keepChanges(KeptSettings& kept, const WindowLook& start, const WindowLook& 
   keep(kept.errorPlotOpen, start.panel.errorPlotOpen, end.panel.errorPlotOpen);
   keep(kept.corrections, start.panel.corrections, end.panel.corrections);
   keep(kept.reuse, start.panel.reuse, end.panel.reuse);
+  keep(kept.approximation, start.panel.approximation, end.panel.approximation);
   keep(kept.fullscreen, start.fullscreen, end.fullscreen);
   if (end.size.width != start.size.width || end.size.height != start.size.height) kept.window = end.size;
 }

@@ -75,6 +75,7 @@ TEST_F(KeptSettingsFile, AllComesBack) {
   kept.errorPlotOpen = false;
   kept.corrections = true;
   kept.reuse = false;
+  kept.approximation = true;
   kept.attention = 0.1;
   kept.fps = 30;
   kept.exposureEv = -1.5;
@@ -90,6 +91,7 @@ TEST_F(KeptSettingsFile, AllComesBack) {
   EXPECT_EQ(back.errorPlotOpen, kept.errorPlotOpen);
   EXPECT_EQ(back.corrections, kept.corrections);
   EXPECT_EQ(back.reuse, kept.reuse);
+  EXPECT_EQ(back.approximation, kept.approximation);
   EXPECT_EQ(back.attention, kept.attention);
   EXPECT_EQ(back.fps, kept.fps);
   EXPECT_EQ(back.exposureEv, kept.exposureEv);

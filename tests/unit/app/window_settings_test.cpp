@@ -19,21 +19,26 @@ TEST(WindowSettings, TheCommandLineGoesBeforeWhatWasKept) {
   kept.exposureEv = 2;
   kept.delta = 0.25;
   kept.reuse = false;
+  kept.approximation = false;
   WalkOptions options;
+  options.corrective.approximation = true;
   const WalkOptions all = withKept(options, kept);
   EXPECT_EQ(all.corrective.attention.attention, 0.25f);
   EXPECT_EQ(all.fps, 50);
   EXPECT_EQ(all.run.exposureEv, 2);
   EXPECT_EQ(all.corrective.delta, 0.25f);
+  EXPECT_FALSE(all.corrective.approximation);
   EXPECT_FALSE(firstPanel(all, kept).reuse);
   EXPECT_EQ(firstPanel(all, kept).fps, 50);
   EXPECT_TRUE(firstPanel(all, {}).reuse);
-  options.given = {.size = true, .fps = true, .attention = true, .exposure = true, .delta = true};
+  options.given = {
+      .size = true, .fps = true, .attention = true, .exposure = true, .delta = true, .approximation = true};
   const WalkOptions none = withKept(options, kept);
   EXPECT_EQ(none.corrective.attention.attention, options.corrective.attention.attention);
   EXPECT_EQ(none.fps, options.fps);
   EXPECT_EQ(none.run.exposureEv, options.run.exposureEv);
   EXPECT_EQ(none.corrective.delta, options.corrective.delta);
+  EXPECT_TRUE(none.corrective.approximation);
 }
 
 TEST(WindowSettings, OnlyChangesAreKept) {
