@@ -67,6 +67,7 @@ struct World::Embree {
   void check() const {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_CANCELLED) throw core::Error("stopped on request");
     throw core::Error("Embree failed with error " + std::to_string(static_cast<int>(error)) +
                       (error == RTC_ERROR_OUT_OF_MEMORY ? " (out of memory: use a smaller scene)" : ""));
   }

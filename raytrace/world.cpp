@@ -10,7 +10,7 @@
 
 namespace saccade::raytrace {
 
-World::World(const core::Scene& scene, const core::Plan& plan)
+World::World(const core::Scene& scene, const core::Plan& plan, const core::Progress& progress)
     : scene_(scene),
       recursionDepth_(plan.recursionDepth),
       attenuates_(plan.attenuation),
@@ -27,7 +27,7 @@ World::World(const core::Scene& scene, const core::Plan& plan)
   for (std::size_t i = 0; i < lights_->emissiveCount(); ++i) {
     records_[lights_->emissiveTriangle(i)].light = static_cast<std::int32_t>(i);
   }
-  buildTrees();
+  buildTrees(progress);
 }
 
 World::~World() = default;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/maps.h"
+#include "core/progress.h"
 #include "core/scene/plan.h"
 #include "core/scene/scene.h"
 #include "raytrace/instance.h"
@@ -83,9 +84,10 @@ struct Twin {
 class World {
  public:
   /// `scene` is charted (core::applyCharts) when maps are used; it must outlive the world. Builds on the
-  /// calling thread. Throws core::Error when Embree fails, and for an instanced mesh whose object emits or
-  /// whose transform cannot be inverted within the range of floats: completeScene leaves none.
-  World(const core::Scene& scene, const core::Plan& plan);
+  /// calling thread. Throws core::Error when Embree fails, soon after `progress.stop` was requested, and for
+  /// an instanced mesh whose object emits or whose transform cannot be inverted within the range of floats:
+  /// completeScene leaves none. Reported is the share of the common tree, the longest part.
+  World(const core::Scene& scene, const core::Plan& plan, const core::Progress& progress = {});
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -188,7 +190,7 @@ class World {
   void addRecords(std::uint32_t firstObject);
   void placeObjects();
   void findTwins();
-  void buildTrees();
+  void buildTrees(const core::Progress& progress);
 
   const core::Scene& scene_;
   int recursionDepth_ = 0;

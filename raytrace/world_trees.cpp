@@ -1,5 +1,6 @@
 // Embree's trees, and the filters that leave out what is not there.
 #include <algorithm>
+#include <chrono>
 
 #include "raytrace/duplicates.h"
 #include "raytrace/embree_scene.h"
@@ -105,8 +106,12 @@ bool countBytes(void* counter, ssize_t bytes, bool) {
 /// Puts the scene into Embree.
 class TreeBuilder {
  public:
-  TreeBuilder(const World& world, World::Embree& embree)
-      : world_(world), scene_(world.scene()), e_(embree), duplicate_(findDuplicates(world.shapes_)) {
+  TreeBuilder(const World& world, World::Embree& embree, const core::Progress& progress)
+      : world_(world),
+        scene_(world.scene()),
+        e_(embree),
+        progress_(progress),
+        duplicate_(findDuplicates(world.shapes_)) {
     e_.own.assign(scene_.objects.size(), nullptr);
     e_.meshes.assign(scene_.meshes.size(), nullptr);
     alphaOfMesh_.assign(scene_.meshes.size(), 0);
@@ -126,11 +131,32 @@ class TreeBuilder {
       rtcReleaseGeometry(geometry);
       e_.check();
     }
-    rtcCommitScene(e_.world);
+    buildsWorld_ = true;
+    commit(e_.world);
     e_.check();
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr auto kReportEvery = std::chrono::milliseconds(50);
+
+  void commit(RTCScene scene) {
+    rtcSetSceneProgressMonitorFunction(scene, goOn, this);
+    rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);  // the scene outlives this builder
+  }
+
+  /// Embree's progress monitor: false ends the build with RTC_ERROR_CANCELLED. One thread builds.
+  static bool goOn(void* builder, double fraction) {
+    auto& self = *static_cast<TreeBuilder*>(builder);
+    const Clock::time_point now = Clock::now();
+    if (self.buildsWorld_ && self.progress_.report && now - self.lastReport_ >= kReportEvery) {
+      self.lastReport_ = now;
+      self.progress_.report(std::min(fraction, 1.0));
+    }
+    return !self.progress_.stop.stop_requested();
+  }
+
   /// The mesh of an object, with its filters.
   RTCGeometry triangles(std::uint32_t o) {
     RTCGeometry geometry = newTriangles(e_.device, world_.meshOf(o));
@@ -162,27 +188,30 @@ class TreeBuilder {
     return newInstance(e_.device, mesh, *world_.instanceOf(o));
   }
 
-  RTCScene sceneOf(RTCGeometry geometry) const {
+  RTCScene sceneOf(RTCGeometry geometry) {
     RTCScene scene = e_.newScene();
     rtcAttachGeometryByID(scene, geometry, 0);
-    rtcCommitScene(scene);
+    commit(scene);
     return scene;
   }
 
   const World& world_;
   const core::Scene& scene_;
   World::Embree& e_;
+  const core::Progress& progress_;
+  bool buildsWorld_ = false;  ///< the common tree is being built
+  Clock::time_point lastReport_{};
   std::vector<bool> duplicate_;
   std::vector<char> alphaOfMesh_;  ///< some object shows it with alpha
   std::vector<char> hidden_;       ///< by object: rays meet its twin
 };
 
-void World::buildTrees() {
+void World::buildTrees(const core::Progress& progress) {
   // One build thread: the tree, and with it the choice between equal distances, is the same on every machine.
   embree_->device = rtcNewDevice("threads=1,set_affinity=0");
   if (!embree_->device) throw core::Error("Embree cannot be started: check that libembree3 is installed");
   rtcSetDeviceMemoryMonitorFunction(embree_->device, countBytes, &embree_->bytes);
-  TreeBuilder(*this, *embree_).build();
+  TreeBuilder(*this, *embree_, progress).build();
 }
 
 }  // namespace saccade::raytrace

@@ -55,6 +55,7 @@ void writeStats(const std::filesystem::path& file, const RunStats& s) {
   json["peak_bytes"] = peakBytes();
   json["converged"] = s.converged;
   if (s.firstFrameMs > 0) json["first_frame_ms"] = s.firstFrameMs;
+  if (s.firstWalkMs > 0) json["first_walk_ms"] = s.firstWalkMs;
   json["seed"] = s.seed;
   json["threads"] = s.threads;
   json["context"] = s.context;

@@ -28,8 +28,9 @@ struct RunStats {
   double tracingSeconds = 0;              ///< wall time in which rays were traced
   std::map<std::string, double> stageMs;  ///< summed over frames
   bool converged = false;
-  double firstFrameMs =
-      0;  ///< window: from the program's start until a scene's first picture was shown; 0 = none was
+  /// Window, from the program's start, 0 = never: until a scene's base layer was shown, and until the first
+  /// frame of the walk in it was, which follows the camera and is corrected.
+  double firstFrameMs = 0, firstWalkMs = 0;
   std::uint32_t seed = 1;
   int threads = 0;
   std::string context, renderer;

@@ -132,6 +132,7 @@ void tell(const OpeningReport& report, const OpeningStep& step) {
 raytrace::ChartAtlas chartReported(Workspace& w, const SceneOptions& options, const BakeRequest& bake,
                                    const std::stop_token& stop, const OpeningReport& report) {
   const auto show = [&](double fraction) { tell(report, {"dividing surfaces into charts", fraction}); };
+  show(0);
   raytrace::LightCharts charts = raytrace::chartByLight(w.scene, w.plan,
                                                         {.quality = options.quality,
                                                          .seed = bake.seed,
@@ -187,7 +188,7 @@ Prepared chartLikeEarlier(Workspace& w, const EarlierMaps& earlier, const core::
     out.atlas.charts = earlier.maps.charts;
     out.atlas.size = earlier.maps.width;
     core::applyCharts(w.scene, out.atlas.charts);
-    w.world = std::make_unique<raytrace::World>(w.scene, w.plan);
+    w.world = std::make_unique<raytrace::World>(w.scene, w.plan, core::Progress{{}, stop});
   } else {
     out.atlas = chartReported(w, options, bake, stop, report);
     std::optional<raytrace::KeptLayout> layout =
@@ -292,7 +293,14 @@ void bakeMaps(Workspace& w, const SceneOptions& options, const BakeRequest& bake
 
 }  // namespace
 
-std::unique_ptr<Workspace> openWorkspace(const SceneOptions& asked, const BakeRequest& bake,
+std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
+                                         const std::stop_token& stop, const OpeningReport& report) {
+  std::unique_ptr<Workspace> w = readWorkspace(options, bake, stop, report);
+  finishWorkspace(*w, stop, report);
+  return w;
+}
+
+std::unique_ptr<Workspace> readWorkspace(const SceneOptions& asked, const BakeRequest& bake,
                                          const std::stop_token& stop, const OpeningReport& report) {
   SceneOptions options = asked;
   options.load.limits.stop = stop;
@@ -309,17 +317,23 @@ std::unique_ptr<Workspace> openWorkspace(const SceneOptions& asked, const BakeRe
     found.reset();
   }
   if (found) {
-    tell(report, {"preparing rays"});
     core::applyCharts(w->scene, found->charts);
-    w->world = std::make_unique<raytrace::World>(w->scene, w->plan);
     w->maps = std::move(*found);
     w->mapsWereThere = true;
   } else {
     bakeMaps(*w, options, bake, key, stop, report);
   }
-  if (stop.stop_requested()) throw core::Error(options.path + ": stopped on request");
-  w->world->setMaps(&w->maps);
   return w;
+}
+
+void finishWorkspace(Workspace& w, const std::stop_token& stop, const OpeningReport& report) {
+  const auto show = [&](double fraction) { tell(report, {"preparing rays", fraction}); };
+  if (!w.world) {
+    show(0);
+    w.world = std::make_unique<raytrace::World>(w.scene, w.plan, core::Progress{show, stop});
+  }
+  core::throwIfStopped(stop);
+  w.world->setMaps(&w.maps);
 }
 
 }  // namespace saccade::app

@@ -15,7 +15,8 @@
 
 namespace saccade::app {
 
-/// Not copyable: the world refers to scene and maps. Read-only after opening; any thread may read it.
+/// Not copyable: the world refers to scene and maps. Read-only after opening, but for the world already once
+/// readWorkspace has returned; any thread may read what is read-only.
 struct Workspace {
   core::Scene scene;  ///< charted
   core::Plan plan;
@@ -58,6 +59,12 @@ core::Scene loadSceneReported(const SceneOptions& options);
 /// kept something. Any thread; `report` may be empty.
 std::unique_ptr<Workspace> openWorkspace(const SceneOptions& options, const BakeRequest& bake,
                                          const std::stop_token& stop, const OpeningReport& report = {});
+
+/// The first half of that: all that the base layer needs. There is no world yet, unless maps were baked.
+std::unique_ptr<Workspace> readWorkspace(const SceneOptions& options, const BakeRequest& bake,
+                                         const std::stop_token& stop, const OpeningReport& report = {});
+/// The second half: the world, with the maps.
+void finishWorkspace(Workspace& workspace, const std::stop_token& stop, const OpeningReport& report = {});
 
 /// Scene and world without maps: what `path` and `info` need. The world has no maps set.
 std::unique_ptr<Workspace> openWithoutMaps(const SceneOptions& options);

@@ -35,8 +35,14 @@ std::optional<SceneOpener::State> SceneOpener::state() const {
   return current_;
 }
 
+std::optional<SceneOpener::Reading> SceneOpener::drawable() const {
+  const std::lock_guard lock(mutex_);
+  return next_ || (current_ && current_->cancelled) ? std::nullopt : drawable_;
+}
+
 std::optional<SceneOpener::Outcome> SceneOpener::take() {
   const std::lock_guard lock(mutex_);
+  if (outcome_) drawable_.reset();
   return std::exchange(outcome_, std::nullopt);
 }
 
@@ -57,6 +63,7 @@ void SceneOpener::work(const std::stop_token& end) {
       visit = *std::exchange(next_, std::nullopt);
       cancel_ = std::stop_source();
       stop = cancel_.get_token();
+      drawable_.reset();
       current_ = State{visit.scene.path, {"starting"}, false};
     }
     Outcome outcome = openNow(visit, stop);
@@ -70,9 +77,13 @@ SceneOpener::Outcome SceneOpener::openNow(const WalkOptions& visit, const std::s
   Outcome outcome;
   outcome.visit = visit;
   try {
-    outcome.workspace = open_(visit, stop, [this](const OpeningStep& step) {
+    const auto report = [this](const OpeningStep& step) {
       const std::lock_guard lock(mutex_);
       current_->step = step;
+    };
+    outcome.workspace = open_(visit, stop, report, [&](std::shared_ptr<const Workspace> workspace) {
+      const std::lock_guard lock(mutex_);
+      drawable_ = Reading{visit, std::move(workspace)};
     });
   } catch (const std::exception& e) {
     outcome.error = e.what();

@@ -19,9 +19,12 @@ namespace saccade::app {
 /// One scene at a time; the last one asked for counts. The owner's thread only, unless a line says otherwise.
 class SceneOpener {
  public:
+  /// To be called with what readWorkspace returned.
+  using Drawable = std::function<void(std::shared_ptr<const Workspace>)>;
   /// Opens a scene: openWorkspace with what belongs to it. Called on the opener's thread.
-  using Open = std::function<std::unique_ptr<const Workspace>(
-      const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report)>;
+  using Open =
+      std::function<std::shared_ptr<const Workspace>(const WalkOptions& visit, const std::stop_token& stop,
+                                                     const OpeningReport& report, const Drawable& drawable)>;
 
   /// What is under way.
   struct State {
@@ -32,13 +35,13 @@ class SceneOpener {
   /// What became of a scene: one of the two.
   struct Outcome {
     WalkOptions visit;
-    std::unique_ptr<const Workspace> workspace;
+    std::shared_ptr<const Workspace> workspace;
     std::string error;       ///< one line
     bool cancelled = false;  ///< `error` says how to go on, no more
   };
 
   explicit SceneOpener(Open open);
-  /// Cancels and waits: a stop is looked at in every stage, but for the building of the world.
+  /// Cancels and waits: a stop is looked at in every stage.
   ~SceneOpener();
 
   /// Cancels what is under way, and opens this next.
@@ -47,6 +50,12 @@ class SceneOpener {
   void cancel();
   /// Nothing: idle. Any thread.
   std::optional<State> state() const;
+  /// What is under way, or not yet taken, has scene and maps: the base layer can be drawn. Any thread.
+  struct Reading {
+    WalkOptions visit;
+    std::shared_ptr<const Workspace> workspace;
+  };
+  std::optional<Reading> drawable() const;
   /// Each outcome once, in the order of the calls of open; one that was overtaken by a later call has none.
   std::optional<Outcome> take();
   /// Cancels, waits, and returns what was not taken. Nothing can be opened afterwards.
@@ -61,6 +70,7 @@ class SceneOpener {
   std::condition_variable_any asked_;
   std::optional<WalkOptions> next_;
   std::optional<State> current_;
+  std::optional<Reading> drawable_;
   std::stop_source cancel_;  ///< of the current one
   std::optional<Outcome> outcome_;
   std::jthread thread_;  ///< last: joined before anything it uses goes

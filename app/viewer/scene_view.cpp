@@ -20,14 +20,14 @@ double secondsSince(SceneView::Clock::time_point start) {
 
 }  // namespace
 
-SceneView::SceneView(const WalkOptions& options, std::unique_ptr<const Workspace> workspace,
-                     render::Window& window)
+SceneView::SceneView(const WalkOptions& options, std::shared_ptr<const Workspace> workspace,
+                     std::unique_ptr<render::BaseRenderer> renderer, render::Window& window)
     : options_(options),
       workspace_(std::move(workspace)),
       window_(window),
-      renderer_(window.context(), workspace_->scene),
+      renderer_(std::move(renderer)),
       recorder_(makeRecorder(options_, *workspace_, window.context())),
-      loop_(*workspace_, renderer_,
+      loop_(*workspace_, *renderer_,
             {options_.corrective, std::max(1, tracerThreads(options_.run)), options_.run.seed,
              options_.run.exposureEv, true}),
       home_(chooseCamera(workspace_->scene, options_.camera)),
@@ -35,7 +35,6 @@ SceneView::SceneView(const WalkOptions& options, std::unique_ptr<const Workspace
       tools_(workspace_->scene) {
   if (recorder_) loop_.recordTo(*recorder_);
   liveError_.emplace(tracedBy(loop_.tracer()));
-  renderer_.setMaps(&workspace_->maps);
   if (!options_.path.empty()) tools_.play(CameraPath::read(options_.path), 0);
   if (options_.orbit) tools_.play(CameraPath::orbit(home_, kOrbitPeriodSeconds), 0);
   if (options_.keepCache) {

@@ -26,7 +26,9 @@ class SceneView {
 
   /// Takes from the options camera, path, recording, kept cache and all that pictures depend on. Throws
   /// core::Error.
-  SceneView(const WalkOptions& options, std::unique_ptr<const Workspace> workspace, render::Window& window);
+  /// `renderer`: of this workspace and the window's context, with the maps.
+  SceneView(const WalkOptions& options, std::shared_ptr<const Workspace> workspace,
+            std::unique_ptr<render::BaseRenderer> renderer, render::Window& window);
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;
 
@@ -68,9 +70,9 @@ class SceneView {
 
   // In the order in which they depend on one another.
   const WalkOptions options_;
-  std::unique_ptr<const Workspace> workspace_;
+  std::shared_ptr<const Workspace> workspace_;
   render::Window& window_;
-  render::BaseRenderer renderer_;
+  std::unique_ptr<render::BaseRenderer> renderer_;
   std::optional<LiveError> liveError_;         ///< above the loop: its idle thread ends once the tracers have
   std::unique_ptr<SessionRecorder> recorder_;  ///< null without --record
   FrameLoop loop_;

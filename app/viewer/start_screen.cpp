@@ -3,21 +3,15 @@
 #include <imgui/imgui.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
+
+#include "core/scene/load.h"
 
 namespace saccade::app {
 
 namespace {
 
 constexpr float kWidthInLetters = 34;  ///< of the windows below, in heights of a letter
-
-bool isScene(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".glb" || extension == ".gltf" || extension == ".obj";
-}
 
 /// A window of fixed width in the middle of the area, `place` of its height down.
 void beginCentred(const char* title, const render::PixelRect& area, float place) {
@@ -56,7 +50,7 @@ void drawProgress(const OpeningStep& step) {
 
 DroppedScene chooseDropped(const std::vector<std::filesystem::path>& files) {
   DroppedScene out;
-  const auto found = std::find_if(files.begin(), files.end(), isScene);
+  const auto found = std::find_if(files.begin(), files.end(), core::isNamedAsScene);
   if (found == files.end()) {
     out.message = (files.empty() ? std::string("nothing") : files.front().filename().string()) +
                   " is no scene: drop a .glb, .gltf or .obj file";

@@ -15,6 +15,7 @@
 
 #include "app/cli/console.h"
 #include "app/session/headless.h"
+#include "app/viewer/base_view.h"
 #include "app/viewer/click.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/scene_opener.h"
@@ -58,9 +59,7 @@ class Viewer {
         uiScale_(options.uiScale.value_or(window_.contentScale())),
         presenter_(window_.context()),
         imgui_(window_, static_cast<float>(uiScale_)),
-        opener_([](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report) {
-          return openWorkspace(visit.scene, bakeOf(visit), stop, report);
-        }) {
+        opener_(openVisit) {
     if (kept_.fullscreen && !options.given.size) window_.setFullscreen(*kept_.fullscreen);
     startLook_ = look();
     if (!options.scene.path.empty()) opener_.open(options);
@@ -77,6 +76,7 @@ class Viewer {
     if (scene_ && !options_.run.statsFile.empty()) {
       RunStats stats = scene_->stats();
       stats.firstFrameMs = firstFrameMs_;
+      stats.firstWalkMs = firstWalkMs_;
       writeStats(options_.run.statsFile, stats);
     }
     endScene();
@@ -96,11 +96,23 @@ class Viewer {
     return {{width, height}, window_.fullscreen(), panel_};
   }
 
+  static std::shared_ptr<const Workspace> openVisit(const WalkOptions& visit, const std::stop_token& stop,
+                                                    const OpeningReport& report,
+                                                    const SceneOpener::Drawable& drawable) {
+    const std::shared_ptr<Workspace> workspace = readWorkspace(visit.scene, bakeOf(visit), stop, report);
+    drawable(workspace);
+    finishWorkspace(*workspace, stop, report);
+    return workspace;
+  }
+
   void frame() {
     const Clock::time_point start = Clock::now();
     for (const render::Event& event : window_.pollEvents())
       std::visit([this](const auto& e) { handle(e); }, event);
-    if (auto outcome = opener_.take()) show(*outcome);
+    if (auto outcome = opener_.take())
+      show(*outcome);
+    else
+      uploadAhead();
     if (scene_) scene_->moveCamera(!ImGui::GetIO().WantCaptureKeyboard);
     const ImageSize size{window_.width() - panelWidth(), window_.height()};
     if (size.width < 1 || size.height < 1) {  // minimised, or narrower than the panel
@@ -124,8 +136,7 @@ class Viewer {
   }
 
   void present(ImageSize size) {
-    static const core::ImageRgba8 kNothing;
-    const core::ImageRgba8& shown = scene_ ? scene_->shown(panel_) : kNothing;
+    const core::ImageRgba8& shown = scene_ ? scene_->shown(panel_) : firstPicture(size);
     window_.bind();
     presenter_.present(shown, {0, 0, size.width, size.height}, window_.width(), window_.height());
     imgui_.newFrame(window_.width(), window_.height());
@@ -136,8 +147,30 @@ class Viewer {
       core::writePng(options_.uiScreenshot, window_.screenshot());
     if (std::exchange(panel_.screenshotWanted, false) && scene_) saveScreenshot(shown);
     window_.swap();
-    if (scene_ && firstFrameMs_ == 0) firstFrameMs_ = 1000 * secondsSince(kProgramStart);
+    if (!shown.empty() && firstFrameMs_ == 0) firstFrameMs_ = 1000 * secondsSince(kProgramStart);
+    if (scene_ && firstWalkMs_ == 0) firstWalkMs_ = 1000 * secondsSince(kProgramStart);
     if (scene_) scene_->serve(panel_);
+  }
+
+  /// Of the scene that is being opened, where no other is: its base layer, or nothing yet.
+  const core::ImageRgba8& firstPicture(ImageSize size) {
+    static const core::ImageRgba8 kNothing;
+    return ahead_ ? ahead_->picture(size, panel_.exposureEv) : kNothing;
+  }
+
+  /// Uploads what is being opened while its world is built. What fails is said once the scene is there.
+  void uploadAhead() {
+    const std::optional<SceneOpener::Reading> reading = opener_.drawable();
+    if (!reading) return ahead_.reset();
+    if (reading->workspace == triedAhead_.lock()) return;
+    triedAhead_ = reading->workspace;
+    ahead_.reset();
+    try {
+      ahead_.emplace(reading->visit, reading->workspace, window_.context());
+      chooseCamera(reading->workspace->scene, reading->visit.camera);
+    } catch (const core::Error&) {
+      ahead_.reset();
+    }
   }
 
   /// Counts from the first scene on, or from there being none to wait for.
@@ -148,17 +181,26 @@ class Viewer {
 
   void show(SceneOpener::Outcome& outcome) {
     if (!outcome.workspace) return tell(outcome);
-    endScene();
-    status_ = 0;
     const std::string scene = outcome.visit.scene.path;
     try {
-      scene_.emplace(outcome.visit, std::move(outcome.workspace), window_);
+      std::unique_ptr<render::BaseRenderer> renderer = uploaded(outcome);
+      endScene();  // not before the new one is known to fit the graphics memory
+      status_ = 0;
+      scene_.emplace(outcome.visit, std::move(outcome.workspace), std::move(renderer), window_);
     } catch (const core::Error& e) {
       outcome.error = e.what();
       return tell(outcome);
     }
     window_.setTitle("Saccade: " + scene);
     addRecent(kept_, scene);
+  }
+
+  std::unique_ptr<render::BaseRenderer> uploaded(const SceneOpener::Outcome& outcome) {
+    if (!ahead_ || ahead_->workspace() != outcome.workspace)
+      ahead_.emplace(outcome.visit, outcome.workspace, window_.context());
+    std::unique_ptr<render::BaseRenderer> renderer = ahead_->takeRenderer();
+    ahead_.reset();
+    return renderer;
   }
 
   /// Where there is no scene, the walk that was asked for has failed.
@@ -212,7 +254,7 @@ class Viewer {
     }
   }
 
-  int panelWidth() const { return scene_ && panel_.visible ? panelPixels(uiScale_) : 0; }
+  int panelWidth() const { return (scene_ || ahead_) && panel_.visible ? panelPixels(uiScale_) : 0; }
 
   ViewerState state() const {
     ViewerState state{panel_, items_};
@@ -309,10 +351,12 @@ class Viewer {
   render::ImguiLayer imgui_;
   WindowLook startLook_;
   SceneOpener opener_;
-  std::optional<SceneView> scene_;  ///< nothing: none is open
-  std::string notice_;              ///< waits to be read; empty: nothing
-  int status_ = 0;                  ///< of the program
-  double firstFrameMs_ = 0;
+  std::optional<BaseView> ahead_;              ///< of the scene that is being opened, once it can be drawn
+  std::weak_ptr<const Workspace> triedAhead_;  ///< whether that could be uploaded or not
+  std::optional<SceneView> scene_;             ///< nothing: none is open
+  std::string notice_;                         ///< waits to be read; empty: nothing
+  int status_ = 0;                             ///< of the program
+  double firstFrameMs_ = 0, firstWalkMs_ = 0;
   UiItems items_;
   StageTimes times_;
   ClickDetector leftButton_;

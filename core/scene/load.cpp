@@ -11,6 +11,14 @@ namespace {
 
 enum class Format { gltf, obj, unknown };
 
+Format formatByName(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (extension == ".gltf" || extension == ".glb") return Format::gltf;
+  return extension == ".obj" ? Format::obj : Format::unknown;
+}
+
 /// By content where it is plain (GLB magic, a JSON object), else by extension.
 Format formatOf(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -19,11 +27,7 @@ Format formatOf(const std::filesystem::path& file) {
   head.resize(static_cast<std::size_t>(in.gcount()));
   const std::size_t text = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (head.starts_with("glTF") || (text != std::string::npos && head[text] == '{')) return Format::gltf;
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (extension == ".gltf" || extension == ".glb") return Format::gltf;
-  return extension == ".obj" ? Format::obj : Format::unknown;
+  return formatByName(file);
 }
 
 Scene parse(const std::filesystem::path& file, const LoadOptions& options, LoadBudget& budget) {
@@ -39,6 +43,8 @@ Scene parse(const std::filesystem::path& file, const LoadOptions& options, LoadB
 }
 
 }  // namespace
+
+bool isNamedAsScene(const std::filesystem::path& file) { return formatByName(file) != Format::unknown; }
 
 Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
   std::error_code failed;

@@ -25,6 +25,9 @@ struct LoadOptions {
   EnvironmentOptions environmentOptions;
 };
 
+/// Whether a file's name ends like a scene's: .glb, .gltf or .obj, in small letters or capitals. Any thread.
+bool isNamedAsScene(const std::filesystem::path& file);
+
 /// Reads a scene, completes it (normals, clusters, ids, hierarchy, default light and camera, plan input) and
 /// returns it. Throws core::Error naming file, element and rule. Repairs are counted in Scene::warnings. Any
 /// thread.

@@ -33,29 +33,53 @@ float weight(float cosView, float cosLight, float alpha2) {
   return cosLight * smithTerm(cosView, alpha2) / (cosLight * view + cosView * light);
 }
 
-/// Visible normal for view (sin, 0, cos) by Heitz 2018, for (u1, phi) with u1 in (0, 1).
-Vec3 visibleNormal(const Vec3& view, float alpha, float u1, float phi) {
-  const Vec3 stretched = glm::normalize(Vec3(alpha * view.x, 0, view.z));
-  const Vec3 t1(0, 1, 0);
-  const Vec3 t2 = glm::cross(stretched, t1);
-  const float r = std::sqrt(u1);
-  const float a = r * std::cos(phi);
-  const float s = 0.5f * (1 + stretched.z);
-  const float b = (1 - s) * std::sqrt(std::max(0.0f, 1 - a * a)) + s * r * std::sin(phi);
-  const Vec3 n = a * t1 + b * t2 + std::sqrt(std::max(0.0f, 1 - a * a - b * b)) * stretched;
-  return glm::normalize(Vec3(alpha * n.x, alpha * n.y, std::max(1e-7f, n.z)));
-}
+/// The midpoint rule's points on the half disc, the same for every entry: r and (cos, sin) of the angle
+/// around the plane of incidence. a = r cos is symmetric, b = r sin is not.
+struct DiscPoints {
+  std::array<float, kPolarSteps> r;
+  std::array<float, kAzimuthSteps> cosine, sine;
 
-AlbedoPair integrate(float cosView, float roughness) {
+  DiscPoints() {
+    for (int i = 0; i < kPolarSteps; ++i) r[i] = std::sqrt((static_cast<float>(i) + 0.5f) / kPolarSteps);
+    for (int j = 0; j < kAzimuthSteps; ++j) {
+      const float phi = (static_cast<float>(j) + 0.5f) / kAzimuthSteps * kPi - 0.5f * kPi;
+      cosine[j] = std::cos(phi);
+      sine[j] = std::sin(phi);
+    }
+  }
+};
+
+/// Visible normals for view (sin, 0, cos) by Heitz 2018.
+class VisibleNormals {
+ public:
+  VisibleNormals(const Vec3& view, float alpha)
+      : alpha_(alpha),
+        stretched_(glm::normalize(Vec3(alpha * view.x, 0, view.z))),
+        t2_(glm::cross(stretched_, t1_)),
+        s_(0.5f * (1 + stretched_.z)) {}
+
+  /// For the point of the disc at r in (0, 1) and an angle.
+  Vec3 at(float r, float cosine, float sine) const {
+    const float a = r * cosine;
+    const float b = (1 - s_) * std::sqrt(std::max(0.0f, 1 - a * a)) + s_ * r * sine;
+    const Vec3 n = a * t1_ + b * t2_ + std::sqrt(std::max(0.0f, 1 - a * a - b * b)) * stretched_;
+    return glm::normalize(Vec3(alpha_ * n.x, alpha_ * n.y, std::max(1e-7f, n.z)));
+  }
+
+ private:
+  float alpha_;
+  Vec3 stretched_, t1_{0, 1, 0}, t2_;
+  float s_;
+};
+
+AlbedoPair integrate(const DiscPoints& disc, float cosView, float roughness) {
   const float alpha = roughness * roughness;
   const Vec3 view(std::sqrt(std::max(0.0f, 1 - cosView * cosView)), 0, cosView);
+  const VisibleNormals normals(view, alpha);
   double scale = 0, bias = 0;
   for (int i = 0; i < kPolarSteps; ++i) {
     for (int j = 0; j < kAzimuthSteps; ++j) {
-      const float u1 = (static_cast<float>(i) + 0.5f) / kPolarSteps;
-      // Half circle around the plane of incidence: a = r cos(phi) is symmetric, b = r sin(phi) is not.
-      const float phi = (static_cast<float>(j) + 0.5f) / kAzimuthSteps * kPi - 0.5f * kPi;
-      const Vec3 normal = visibleNormal(view, alpha, u1, phi);
+      const Vec3 normal = normals.at(disc.r[i], disc.cosine[j], disc.sine[j]);
       const float cosHalf = std::min(1.0f, glm::dot(view, normal));
       const float cosLight = 2 * cosHalf * normal.z - view.z;
       if (cosHalf <= 0 || cosLight <= 0) continue;
@@ -80,11 +104,12 @@ struct Table {
   std::array<AlbedoPair, kRoughnesses> mean;
 
   Table() {
+    const DiscPoints disc;
     for (int r = 0; r < kRoughnesses; ++r) {
       for (int c = 0; c < kCosines; ++c) {
         const float t = static_cast<float>(c) / (kCosines - 1);
         directional[r][c] =
-            integrate(std::max(kSmallestCosine, t * t), static_cast<float>(r) / (kRoughnesses - 1));
+            integrate(disc, std::max(kSmallestCosine, t * t), static_cast<float>(r) / (kRoughnesses - 1));
       }
       mean[r] = meanOf(directional[r]);
     }

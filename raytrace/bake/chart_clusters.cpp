@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "core/progress.h"
 #include "raytrace/bake/cell_clip.h"
 
 namespace saccade::raytrace {
@@ -33,10 +34,13 @@ struct PositionHash {
 /// What clustering knows of a mesh's triangles.
 class Topology {
  public:
-  explicit Topology(const core::Mesh& mesh) : mesh_(mesh), count_(mesh.triangleCount()) {
+  Topology(const core::Mesh& mesh, const std::stop_token& stop) : mesh_(mesh), count_(mesh.triangleCount()) {
     weld();
+    core::throwIfStopped(stop);
     measure();
+    core::throwIfStopped(stop);
     connect();
+    core::throwIfStopped(stop);
   }
 
   std::size_t count() const { return count_; }
@@ -369,14 +373,15 @@ std::vector<Chart> halve(const Topology& mesh, const Chart& chart, const glm::dv
 
 }  // namespace
 
-std::vector<Chart> clusterMesh(const core::Mesh& mesh) {
-  const Topology topology(mesh);
+std::vector<Chart> clusterMesh(const core::Mesh& mesh, const std::stop_token& stop) {
+  const Topology topology(mesh, stop);
   double total = 0;
   for (std::uint32_t t = 0; t < topology.count(); ++t) total += topology.area(t);
   const double worthHalving = total / 256;  // hollow charts smaller than this waste little
   std::vector<std::uint32_t> mark(topology.count(), kNone);
   std::vector<Chart> pending = Grower(topology).grow(mark), done;
   for (std::size_t i = 0; i < pending.size(); ++i) {
+    core::throwIfStopped(stop);
     Chart chart = std::move(pending[i]);
     fitRectangle(topology, chart, mark);
     const glm::dvec2 extent = chart.hi - chart.lo;

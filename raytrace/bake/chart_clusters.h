@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <stop_token>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -23,6 +24,7 @@ struct Chart {
 
 /// Every triangle is in exactly one chart; degenerate ones (no area, non-finite) share one chart without
 /// extent. Charts turn so that their bounding rectangle is small; hollow ones (a window frame) are halved.
-std::vector<Chart> clusterMesh(const core::Mesh& mesh);
+/// About a microsecond a triangle. Throws core::Error soon after `stop` was requested.
+std::vector<Chart> clusterMesh(const core::Mesh& mesh, const std::stop_token& stop = {});
 
 }  // namespace saccade::raytrace

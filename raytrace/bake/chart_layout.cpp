@@ -18,6 +18,7 @@ constexpr double kOfAtlas = 0.5;  // that meshes with an atlas of their own, or 
 constexpr double kCrumpled = 1.5;     // texels that charts take, over those that their surface would
 constexpr double kVertexWorth = 2;    // texels
 constexpr double kMostDoublings = 6;  // of an object's block: its border widens with it
+constexpr double kReportStep = 0.02;  // of all triangles
 
 int texelsFor(double metres, double texel) {
   return static_cast<int>(std::clamp(std::round(metres / texel), 1.0, 1e6));
@@ -41,7 +42,7 @@ double unitOf(const core::Object& object) {
 }  // namespace
 
 ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels, VertexLight vertexLight,
-                         double withBlocks)
+                         double withBlocks, const core::Progress& progress)
     : scene_(scene),
       charts_(scene.meshes.size()),
       chartOfTriangle_(scene.meshes.size()),
@@ -52,28 +53,39 @@ ChartLayout::ChartLayout(const core::Scene& scene, double mostTexels, VertexLigh
       vertexLight_(vertexLight) {
   shareTexels(mostTexels);
   std::vector<std::size_t> blockOf(scene.meshes.size(), kNone);
+  const auto triangles = static_cast<double>(scene.triangleCount());
+  double done = 0, reported = 0;
   for (std::size_t o = 0; o < scene.objects.size(); ++o) {
-    const core::Object& object = scene.objects[o];
-    firstItem_.push_back(items_.size());
-    if (!isLit(object)) {
-      shared_ = true;
-    } else if (scene.meshOf(object).instanced) {
-      addInstance(o, blockOf[object.mesh]);
-    } else {
-      const std::vector<PlacedChart>& charts = chartsOf(object.mesh);
-      order_.push_back(object.mesh);
-      orderItem_.push_back(items_.size());
-      for (std::size_t c = 0; c < charts.size(); ++c) addItem(charts, c, c + 1, 1);
-    }
+    core::throwIfStopped(progress.stop);
+    addObject(o, blockOf, progress.stop);
+    done += static_cast<double>(scene.meshOf(scene.objects[o]).triangleCount()) / triangles;
+    if (!progress.report || done < reported + kReportStep) continue;
+    progress.report(std::min(done, 1.0));
+    reported = done;
   }
   if (shared_) sharedPlace_.width = sharedPlace_.height = 1 + 2 * kBorder;
+}
+
+void ChartLayout::addObject(std::size_t o, std::vector<std::size_t>& blockOf, const std::stop_token& stop) {
+  const core::Object& object = scene_.objects[o];
+  firstItem_.push_back(items_.size());
+  if (!isLit(object)) {
+    shared_ = true;
+  } else if (scene_.meshOf(object).instanced) {
+    addInstance(o, blockOf[object.mesh], stop);
+  } else {
+    const std::vector<PlacedChart>& charts = chartsOf(object.mesh, stop);
+    order_.push_back(object.mesh);
+    orderItem_.push_back(items_.size());
+    for (std::size_t c = 0; c < charts.size(); ++c) addItem(charts, c, c + 1, 1);
+  }
 }
 
 bool ChartLayout::isLit(const core::Object& object) const {
   return showsIrradiance(scene_.materials[static_cast<std::size_t>(object.material)]);
 }
 
-void ChartLayout::addInstance(std::size_t o, std::size_t& block) {
+void ChartLayout::addInstance(std::size_t o, std::size_t& block, const std::stop_token& stop) {
   const core::Object& object = scene_.objects[o];
   const double unit = unitOf(object);
   if (block == kNone) {
@@ -81,7 +93,7 @@ void ChartLayout::addInstance(std::size_t o, std::size_t& block) {
     blocks_.push_back({object.mesh, 0, 0});
   }
   instances_.push_back({o, block, unit, 1, {}});
-  const std::vector<PlacedChart>& charts = chartsOf(object.mesh);
+  const std::vector<PlacedChart>& charts = chartsOf(object.mesh, stop);
   addItem(charts, 0, charts.size(), unit);
 }
 
@@ -103,7 +115,8 @@ void ChartLayout::shareTexels(double mostTexels) {
 }
 
 /// Charts of a mesh, made once.
-std::vector<ChartLayout::PlacedChart>& ChartLayout::chartsOf(std::uint32_t mesh) {
+std::vector<ChartLayout::PlacedChart>& ChartLayout::chartsOf(std::uint32_t mesh,
+                                                             const std::stop_token& stop) {
   std::vector<PlacedChart>& charts = charts_[mesh];
   if (!charts.empty()) return charts;
   own_[mesh] = examineAtlas(scene_.meshes[mesh], shares_[mesh]);
@@ -114,7 +127,7 @@ std::vector<ChartLayout::PlacedChart>& ChartLayout::chartsOf(std::uint32_t mesh)
     keepAtlas(mesh);
     return charts;
   }
-  std::vector<Chart> clusters = clusterMesh(scene_.meshes[mesh]);
+  std::vector<Chart> clusters = clusterMesh(scene_.meshes[mesh], stop);
   if (lightByVertex(mesh, clusters)) return charts;
   for (Chart& chart : clusters) {
     for (const std::uint32_t t : chart.triangles) chartOf[t] = static_cast<std::uint32_t>(charts.size());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/maps.h"
+#include "core/progress.h"
 #include "core/scene/scene.h"
 #include "raytrace/bake/chart_clusters.h"
 #include "raytrace/bake/own_atlas.h"
@@ -38,8 +39,11 @@ class ChartLayout {
   /// mostly shorter than texels, and its charts fall to pieces: with borders they take half as many texels
   /// again as its surface would, and it has at most twice as many vertices. Such meshes take at most half of
   /// the atlas. Instanced meshes do not: their objects' blocks differ in scale.
+  ///
+  /// Progress is that in triangles. Throws core::Error soon after a stop was requested.
   explicit ChartLayout(const core::Scene& scene, double mostTexels = 1 << 20,
-                       VertexLight vertexLight = VertexLight::never, double withBlocks = 0);
+                       VertexLight vertexLight = VertexLight::never, double withBlocks = 0,
+                       const core::Progress& progress = {});
 
   std::size_t chartCount() const { return count_ + (shared_ ? 1 : 0); }
   /// Of meshes that show irradiance.
@@ -84,9 +88,10 @@ class ChartLayout {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
   bool isLit(const core::Object& object) const;
-  void addInstance(std::size_t o, std::size_t& block);
+  void addObject(std::size_t o, std::vector<std::size_t>& blockOf, const std::stop_token& stop);
+  void addInstance(std::size_t o, std::size_t& block, const std::stop_token& stop);
   void shareTexels(double mostTexels);
-  std::vector<PlacedChart>& chartsOf(std::uint32_t mesh);
+  std::vector<PlacedChart>& chartsOf(std::uint32_t mesh, const std::stop_token& stop);
   void keepAtlas(std::uint32_t mesh);
   bool lightByVertex(std::uint32_t mesh, const std::vector<Chart>& charts);
   void addItem(const std::vector<PlacedChart>& charts, std::size_t first, std::size_t last, double unit);

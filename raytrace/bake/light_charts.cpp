@@ -18,12 +18,16 @@ constexpr double kProbeFill = 0.8;        // of it
 constexpr double kProbeTexels = 1 << 20;  // the middle distance of a probe: texels of an atlas of so many
 constexpr int kSizeStep = 64;             // atlas sides are multiples of it
 constexpr double kMostFill = 0.95;        // a packing's at best
+constexpr double kLayoutDone = 0.4;       // of the progress, when charts are cut
+constexpr double kWorldDone = 0.6;        // and when rays can be traced
 
 /// Packs into the smallest atlas that holds it, not larger than `largest`; 0 when that does not.
-int packSmallest(ChartLayout& layout, const std::vector<double>& texelMetres, int largest) {
+int packSmallest(ChartLayout& layout, const std::vector<double>& texelMetres, int largest,
+                 const std::stop_token& stop) {
   const double side = std::sqrt(layout.texelCount(texelMetres) / kMostFill);
   int size = static_cast<int>(std::ceil(std::clamp(side / kSizeStep, 1.0, 1e5))) * kSizeStep;
   for (;; size += kSizeStep) {
+    core::throwIfStopped(stop);
     if (layout.pack(texelMetres, std::min(size, largest))) return std::min(size, largest);
     if (size >= largest) return 0;
   }
@@ -38,10 +42,11 @@ bool canCoarsen(const ChartLayout& layout, const std::vector<double>& texelMetre
 }
 
 /// Coarsens all texels alike until they fit; returns the atlas side.
-int packWithin(ChartLayout& layout, std::vector<double>& texelMetres, int largest) {
+int packWithin(ChartLayout& layout, std::vector<double>& texelMetres, int largest,
+               const std::stop_token& stop) {
   constexpr double kStep = 1.03;
   for (;;) {
-    const int size = packSmallest(layout, texelMetres, largest);
+    const int size = packSmallest(layout, texelMetres, largest, stop);
     if (size > 0) return size;
     if (!canCoarsen(layout, texelMetres)) {
       throw core::Error("illumination maps: " + std::to_string(layout.chartCount()) +
@@ -86,7 +91,7 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   const bool mayByVertex = options.vertexLight && plan.denseMeshes > 0;
   ChartLayout layout(scene, std::min(wish.texels, mostOfPlan),
                      mayByVertex ? VertexLight::whereItPays : VertexLight::never,
-                     wish.texels + wish.detailTexels);
+                     wish.texels + wish.detailTexels, progress.part(0, kLayoutDone));
   // Many small charts are not to share one texel each.
   const double mostTexels =
       std::min(std::max(wish.texels, kTexelsPerChart * static_cast<double>(layout.chartCount())), mostOfPlan);
@@ -96,15 +101,15 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
   out.atlas.chartCount = layout.chartCount();
   out.atlas.ownAtlases = layout.ownAtlases();
   out.atlas.vertexLitMeshes = layout.vertexLitMeshes();
-  const int probeSize = packWithin(layout, sides, largest);
+  const int probeSize = packWithin(layout, sides, largest, progress.stop);
   out.atlas.charts = layout.cut(probeSize);
   core::applyCharts(scene, out.atlas.charts);
-  out.world = std::make_unique<World>(scene, plan);
+  out.world = std::make_unique<World>(scene, plan, progress.part(kLayoutDone, kWorldDone));
 
   const VariationOptions probes = probesOf(layout, options);
   const TexelMap texels(scene, probeSize);
   const std::vector<LightVariation> variation =
-      measureVariation(*out.world, texels, layout, probes, progress);
+      measureVariation(*out.world, texels, layout, probes, progress.part(kWorldDone, 1));
   DensityGoal goal;
   goal.relativeError = wish.texelError;
   goal.mostTexels = mostTexels;
@@ -115,7 +120,7 @@ LightCharts chartByLight(core::Scene& scene, const core::Plan& plan, const Light
                          wish.detailTexels > 0 ? goal.coarsest * kFinestBesideBlocks : 0);
   DensityChoice choice = chooseDensity(layout, variation, probes.metres, goal);
   out.relativeError = choice.relativeError;
-  out.atlas.size = packWithin(layout, choice.texelMetres, largest);
+  out.atlas.size = packWithin(layout, choice.texelMetres, largest, progress.stop);
   if (!choice.texelMetres.empty()) {
     const auto [finest, coarsest] = std::minmax_element(choice.texelMetres.begin(), choice.texelMetres.end());
     out.finestMetres = static_cast<float>(*finest);

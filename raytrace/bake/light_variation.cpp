@@ -264,9 +264,9 @@ std::vector<LightVariation> measureVariation(const World& world, const TexelMap&
                                              const ChartLayout& layout, const VariationOptions& options,
                                              const core::Progress& progress) {
   Survey survey(world, texels, surfaceOfItems(world, layout), options);
-  survey.round(survey.areas(), options.pointsPerItem, progress);
+  survey.round(survey.areas(), options.pointsPerItem, progress.part(0, 0.5));
   // Small bright surfaces (bars before a window) hold much of the error and little of the area.
-  survey.round(survey.squaredLight(), 0, progress);
+  survey.round(survey.squaredLight(), 0, progress.part(0.5, 1));
   return survey.result();
 }
 

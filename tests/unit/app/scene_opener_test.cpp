@@ -9,6 +9,7 @@
 
 #include "app/viewer/start_screen.h"
 #include "core/error.h"
+#include "core/scene/load.h"
 #include "tests/temporary_folder.h"
 #include "tests/unit/app/fixtures.h"
 
@@ -41,8 +42,8 @@ SceneOpener::Outcome outcomeOf(SceneOpener& opener) {
 }
 
 /// Opens nothing: goes on until it is told to stop, and says so.
-std::unique_ptr<const Workspace> openUntilStopped(const WalkOptions&, const std::stop_token& stop,
-                                                  const OpeningReport& report) {
+std::shared_ptr<const Workspace> openUntilStopped(const WalkOptions&, const std::stop_token& stop,
+                                                  const OpeningReport& report, const SceneOpener::Drawable&) {
   report({"working", 0.25, 12});
   while (!stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
   throw core::Error("stopped on request");
@@ -50,7 +51,8 @@ std::unique_ptr<const Workspace> openUntilStopped(const WalkOptions&, const std:
 
 TEST(SceneOpener, OpensASceneAndSaysWhatItIsAt) {
   std::vector<std::string> steps;
-  SceneOpener opener([&](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report) {
+  SceneOpener opener([&](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report,
+                         const SceneOpener::Drawable&) {
     BakeRequest bake;
     bake.file = tests::temporaryFolder() / "opened.maps";
     return openWorkspace(visit.scene, bake, stop, [&](const OpeningStep& step) {
@@ -75,9 +77,9 @@ TEST(SceneOpener, OpensASceneAndSaysWhatItIsAt) {
 }
 
 TEST(SceneOpener, AFileThatIsNoSceneIsOneLine) {
-  SceneOpener opener([](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report) {
-    return openWorkspace(visit.scene, {}, stop, report);
-  });
+  SceneOpener opener(
+      [](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report,
+         const SceneOpener::Drawable&) { return openWorkspace(visit.scene, {}, stop, report); });
   opener.open(visitOf("/nowhere/at all.glb"));
   const SceneOpener::Outcome outcome = outcomeOf(opener);
   EXPECT_FALSE(outcome.workspace);
@@ -102,9 +104,9 @@ TEST(SceneOpener, CancelEndsWhatIsUnderWayWithItsReason) {
 
 // Who drops three files one after the other wants the last.
 TEST(SceneOpener, TheLastSceneAskedForCounts) {
-  SceneOpener opener([](const WalkOptions& visit, const std::stop_token& stop,
-                        const OpeningReport& report) -> std::unique_ptr<const Workspace> {
-    if (visit.scene.path != "c.glb") return openUntilStopped(visit, stop, report);
+  SceneOpener opener([](const WalkOptions& visit, const std::stop_token& stop, const OpeningReport& report,
+                        const SceneOpener::Drawable& drawable) -> std::shared_ptr<const Workspace> {
+    if (visit.scene.path != "c.glb") return openUntilStopped(visit, stop, report, drawable);
     return std::make_unique<Workspace>();
   });
   for (const char* scene : {"a.glb", "b.glb", "c.glb"}) opener.open(visitOf(scene));
@@ -116,7 +118,8 @@ TEST(SceneOpener, TheLastSceneAskedForCounts) {
 
 TEST(SceneOpener, ASceneThatIsReadyAfterItWasCancelledIsNotShown) {
   std::atomic<bool> reading{false};
-  SceneOpener opener([&](const WalkOptions&, const std::stop_token& stop, const OpeningReport&) {
+  SceneOpener opener([&](const WalkOptions&, const std::stop_token& stop, const OpeningReport&,
+                         const SceneOpener::Drawable&) {
     reading = true;
     while (!stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
     return std::make_unique<Workspace>();
@@ -127,6 +130,36 @@ TEST(SceneOpener, ASceneThatIsReadyAfterItWasCancelledIsNotShown) {
   const SceneOpener::Outcome outcome = outcomeOf(opener);
   EXPECT_FALSE(outcome.workspace);
   EXPECT_TRUE(outcome.cancelled);
+}
+
+// The window draws the base layer while the world is built, and goes on with what it uploaded.
+TEST(SceneOpener, WhatCanBeDrawnIsWhatWillBeOpened) {
+  std::atomic<bool> worldIsBuilt{false};
+  SceneOpener opener([&](const WalkOptions&, const std::stop_token& stop, const OpeningReport&,
+                         const SceneOpener::Drawable& drawable) {
+    auto workspace = std::make_shared<const Workspace>();
+    drawable(workspace);
+    while (!worldIsBuilt && !stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
+    return workspace;
+  });
+  EXPECT_FALSE(opener.drawable());
+  opener.open(visitOf("a.glb"));
+  ASSERT_TRUE(eventually([&] { return opener.drawable().has_value(); }));
+  EXPECT_EQ(opener.drawable()->visit.scene.path, "a.glb");
+  EXPECT_TRUE(opener.state()) << "it is not open yet";
+  const std::shared_ptr<const Workspace> drawn = opener.drawable()->workspace;
+  worldIsBuilt = true;
+  ASSERT_TRUE(eventually([&] { return !opener.state(); }));
+  EXPECT_TRUE(opener.drawable()) << "until it is taken";
+  EXPECT_EQ(outcomeOf(opener).workspace, drawn);
+  EXPECT_FALSE(opener.drawable());
+
+  worldIsBuilt = false;
+  opener.open(visitOf("b.glb"));
+  ASSERT_TRUE(eventually([&] { return opener.drawable().has_value(); }));
+  opener.cancel();
+  EXPECT_FALSE(opener.drawable()) << "nobody wants to see it";
+  EXPECT_TRUE(outcomeOf(opener).cancelled);
 }
 
 TEST(SceneOpener, TheEndDoesNotWaitForAScene) {
@@ -154,6 +187,9 @@ TEST(DroppedScene, IsTheFirstByItsExtension) {
   const DroppedScene one = chooseDropped({"/a/Straße 1.GLB"});
   EXPECT_EQ(one.scene, "/a/Straße 1.GLB");
   EXPECT_EQ(one.message, "");
+  for (const char* name : {"a.glb", "a.gltf", "a.obj", "a.Obj"})
+    EXPECT_TRUE(core::isNamedAsScene(name)) << name;
+  for (const char* name : {"glb", "a.glb.png", "obj.", ""}) EXPECT_FALSE(core::isNamedAsScene(name)) << name;
   const DroppedScene several = chooseDropped({"/a/readme.txt", "/a/b.obj", "/a/c.gltf"});
   EXPECT_EQ(several.scene, "/a/b.obj");
   EXPECT_NE(several.message.find("3 files"), std::string::npos) << several.message;

@@ -8,6 +8,7 @@
 
 #include "app/viewer/kept_settings.h"
 #include "core/cache_folder.h"
+#include "core/image_io.h"
 #include "tests/unit/app/driven_viewer.h"
 #include "tests/unit/app/fixtures.h"
 
@@ -97,6 +98,7 @@ TEST_F(WindowScenes, WhatIsNoSceneIsSaidAndChangesNothing) {
     viewer.frames(2);
     EXPECT_GT(viewer.state().items.at("notice").width, 0) << "on the screen";
     EXPECT_EQ(viewer.state().scene, bundled("cornell.glb").string());
+    viewer.frames(3);
     viewer.clickOn("notice ok");
     viewer.until("the note is gone", [&] { return viewer.state().notice.empty(); });
     viewer.untilConverged();  // and the screen shows it
@@ -116,6 +118,28 @@ TEST_F(WindowScenes, CancelKeepsTheOldScene) {
                  [&] { return viewer.state().opening.empty() && !viewer.state().notice.empty(); });
     EXPECT_NE(viewer.state().notice.find("stopped on request"), std::string::npos) << viewer.state().notice;
     EXPECT_EQ(viewer.state().scene, bundled("cornell.glb").string());
+  });
+  EXPECT_EQ(status, 0);
+}
+
+// What OpenGL refuses is known before the old scene is let go.
+TEST_F(WindowScenes, ASceneThatCannotBeUploadedKeepsTheOldOne) {
+  const std::filesystem::path other = std::filesystem::current_path() / "wide.obj";
+  std::ofstream(other) << "mtllib wide.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                          "f 1/1 2/2 3/3\n";
+  std::ofstream("wide.mtl") << "newmtl m\nKd 1 1 1\nmap_Kd wide.png\n";
+  core::writePng("wide.png", core::ImageRgba8(100000, 1));  // no context takes textures as wide
+  const int status = DrivenViewer::run(drivenOptions(), [&](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    drop(viewer, {other});
+    viewer.until("the reason is shown",
+                 [&] { return viewer.state().opening.empty() && !viewer.state().notice.empty(); });
+    EXPECT_NE(viewer.state().notice.find("100000x1 texels"), std::string::npos) << viewer.state().notice;
+    EXPECT_EQ(viewer.state().scene, bundled("cornell.glb").string());
+    viewer.frames(3);
+    viewer.clickOn("notice ok");
+    viewer.until("the note is gone", [&] { return viewer.state().notice.empty(); });
+    viewer.untilConverged();  // the old scene's pictures are as before
   });
   EXPECT_EQ(status, 0);
 }
