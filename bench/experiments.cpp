@@ -5,6 +5,7 @@
 #include "bench/growth/growth.h"
 #include "bench/hard/hard.h"
 #include "bench/harness/experiment.h"
+#include "bench/load/first_frame.h"
 #include "bench/load/load.h"
 #include "bench/many_lights/many_lights.h"
 #include "bench/maps/maps.h"
@@ -51,6 +52,10 @@ const std::vector<Experiment>& allExperiments() {
        {},
        &measureAttention},
       {"load", "What takes the time from a file to its first frame?", {}, &measureLoad},
+      {"first-frame",
+       "How soon after its start does the window show a scene whose maps are ready?",
+       {},
+       &measureFirstFrame},
       {"many-lights",
        "What does a light sample among many lamps cost, and how far off is it?",
        {Suite::quick},

@@ -6,50 +6,17 @@
 #include "app/session/stats.h"
 #include "app/session/workspace.h"
 #include "bench/load/bare_parse.h"
+#include "bench/load/subjects.h"
 
 namespace saccade::bench {
 namespace {
 
 constexpr app::ImageSize kSize{512, 512};
 
-struct Subject {
-  std::string file;
-  std::string unitScale = "1";  ///< metres per unit
-};
-
 /// Else decoding them is not parsing's: an .obj's images lie beside it.
 bool holdsImages(const Subject& s) { return !s.file.ends_with(".obj"); }
 
 double peak() { return static_cast<double>(app::peakBytes()); }
-
-app::SceneOptions optionsOf(const Subject& s) {
-  app::SceneOptions options;
-  options.path = s.file;
-  options.quality = "preview";
-  options.load.unitScale = std::stof(s.unitScale);
-  return options;
-}
-
-/// A bundled scene, and those of the shared folder that are there.
-std::vector<Subject> subjectsOf(Session& session) {
-  std::vector<Subject> subjects;
-  for (const std::string& file : session.options().scenes) subjects.push_back({file});
-  if (!subjects.empty()) return subjects;
-  subjects.push_back({bundledScene("gallery")});
-  if (session.quick()) return subjects;
-  const std::array<Subject, 4> shared = {{{"scenes/rooms/chess-board_undraco.glb"},
-                                          {"scenes/conference/conference.obj", "0.003"},
-                                          {"scenes/samples/MetalRoughSpheresNoTextures.glb"},
-                                          {"scenes/samples/WaterBottle.glb"}}};
-  for (const Subject& s : shared) {
-    if (const auto file = sharedFile(s.file)) {
-      subjects.push_back({*file, s.unitScale});
-    } else {
-      session.say("load: " + s.file + " of the shared folder is not here; left out");
-    }
-  }
-  return subjects;
-}
 
 /// Figures by name, round by round.
 using Rounds = std::map<std::string, std::vector<double>>;
@@ -136,7 +103,7 @@ Figures loadAndDraw(const Arguments& arguments, const std::stop_token&) {
 }
 
 void measureLoad(Session& session) {
-  for (const Subject& subject : subjectsOf(session)) {
+  for (const Subject& subject : subjectsOf(session, "load", {"gallery"})) {
     session.say("load: " + sceneName(subject.file));
     measureScene(session, subject);
   }

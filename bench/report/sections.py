@@ -138,6 +138,9 @@ SECTIONS: dict[str, Section] = {
     "load": Section(
         "From file to first frame", "Seconds and bytes until the first picture, beside a bare parse of the file.", plain
     ),
+    "first-frame": Section(
+        "The window's first frame", "Seconds from the program's start to a scene's first picture, maps ready.", plain
+    ),
     "reference": Section("References", "The pictures that everything is measured against, and their own error.", plain),
 }
 
