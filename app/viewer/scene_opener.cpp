@@ -46,6 +46,11 @@ std::optional<SceneOpener::Outcome> SceneOpener::take() {
   return std::exchange(outcome_, std::nullopt);
 }
 
+void SceneOpener::awaitNews(std::chrono::milliseconds atMost) {
+  std::unique_lock lock(mutex_);
+  if (!outcome_) news_.wait_for(lock, atMost);
+}
+
 std::optional<SceneOpener::Outcome> SceneOpener::end() {
   cancel();
   thread_.request_stop();
@@ -70,6 +75,7 @@ void SceneOpener::work(const std::stop_token& end) {
     const std::lock_guard lock(mutex_);
     current_.reset();
     if (!next_) outcome_ = std::move(outcome);
+    news_.notify_all();
   }
 }
 
@@ -84,6 +90,7 @@ SceneOpener::Outcome SceneOpener::openNow(const WalkOptions& visit, const std::s
     outcome.workspace = open_(visit, stop, report, [&](std::shared_ptr<const Workspace> workspace) {
       const std::lock_guard lock(mutex_);
       drawable_ = Reading{visit, std::move(workspace)};
+      news_.notify_all();
     });
   } catch (const std::exception& e) {
     outcome.error = e.what();

@@ -2,6 +2,7 @@
 // computed.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -58,6 +59,8 @@ class SceneOpener {
   std::optional<Reading> drawable() const;
   /// Each outcome once, in the order of the calls of open; one that was overtaken by a later call has none.
   std::optional<Outcome> take();
+  /// Waits so long at most, less where something becomes drawable or has an outcome meanwhile.
+  void awaitNews(std::chrono::milliseconds atMost);
   /// Cancels, waits, and returns what was not taken. Nothing can be opened afterwards.
   std::optional<Outcome> end();
 
@@ -68,6 +71,7 @@ class SceneOpener {
   const Open open_;
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable_any asked_;
+  std::condition_variable news_;
   std::optional<WalkOptions> next_;
   std::optional<State> current_;
   std::optional<Reading> drawable_;

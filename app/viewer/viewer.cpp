@@ -124,7 +124,8 @@ class Viewer {
   }
 
   void drawFrame(ImageSize size, Clock::time_point start) {
-    if (!scene_) std::this_thread::sleep_for(kIdlePause);
+    if (!scene_ && !newPicture_) opener_.awaitNews(kIdlePause);
+    newPicture_ = false;
     const std::chrono::duration<double> budget(1 / panel_.fps - presentSeconds_);
     if (scene_) scene_->step(panel_, size, start + std::chrono::duration_cast<Clock::duration>(budget));
     const Clock::time_point stepped = Clock::now();
@@ -168,6 +169,7 @@ class Viewer {
     try {
       ahead_.emplace(reading->visit, reading->workspace, window_.context());
       chooseCamera(reading->workspace->scene, reading->visit.camera);
+      newPicture_ = true;
     } catch (const core::Error&) {
       ahead_.reset();
     }
@@ -352,6 +354,7 @@ class Viewer {
   WindowLook startLook_;
   SceneOpener opener_;
   std::optional<BaseView> ahead_;              ///< of the scene that is being opened, once it can be drawn
+  bool newPicture_ = false;                    ///< to be shown without a pause
   std::weak_ptr<const Workspace> triedAhead_;  ///< whether that could be uploaded or not
   std::optional<SceneView> scene_;             ///< nothing: none is open
   std::string notice_;                         ///< waits to be read; empty: nothing

@@ -30,11 +30,11 @@ struct Hit {
   bool front;
 };
 
-/// Whether the ray can meet the box; says yes in doubt.
-bool mayMeet(const Bounds& box, const Vec3& from, const Vec3& direction) {
+/// Whether the ray can meet the box before `within`, in units of the direction's length; says yes in doubt.
+bool mayMeet(const Bounds& box, const Vec3& from, const Vec3& direction, float within) {
   const Vec3 slack = 1e-4f * (glm::abs(box.lo) + glm::abs(box.hi) + glm::abs(from));
   const Vec3 a = (box.lo - slack - from) / direction, b = (box.hi + slack - from) / direction;
-  float enter = 0, leave = kInfinity;
+  float enter = 0, leave = within;
   for (int c = 0; c < 3; ++c) {
     // NaN (0 / 0: in the plane of a side) changes nothing.
     enter = std::fmax(enter, std::fmin(a[c], b[c]));
@@ -43,12 +43,14 @@ bool mayMeet(const Bounds& box, const Vec3& from, const Vec3& direction) {
   return enter <= leave;
 }
 
-/// visit(Hit) for whatever the ray meets, in no order. Every triangle of the boxes met is tried: a few dozen
-/// rays once per scene do not pay for a tree.
+/// visit(Hit) for whatever the ray meets, in no order, but for what it meets in boxes beyond `within`, which
+/// visit may lower. Every triangle of the boxes met is tried: a few dozen rays once per scene do not pay for
+/// a tree.
 template <class Visit>
-void forEachHit(const Scene& scene, const Vec3& worldFrom, const Vec3& worldDirection, Visit&& visit) {
+void forEachHit(const Scene& scene, const Vec3& worldFrom, const Vec3& worldDirection, const float& within,
+                Visit&& visit) {
   for (const Object& o : scene.objects) {
-    if (!mayMeet(o.bounds, worldFrom, worldDirection)) continue;
+    if (!mayMeet(o.bounds, worldFrom, worldDirection, within)) continue;
     Vec3 from = worldFrom, direction = worldDirection;
     bool mirrored = false;
     if (scene.meshOf(o).instanced) {
@@ -79,8 +81,11 @@ void forEachHit(const Scene& scene, const Vec3& worldFrom, const Vec3& worldDire
 
 std::optional<Hit> nearestHit(const Scene& scene, const Vec3& from, const Vec3& direction) {
   std::optional<Hit> nearest;
-  forEachHit(scene, from, direction, [&](const Hit& hit) {
-    if (!nearest || hit.distance < nearest->distance) nearest = hit;
+  float within = kInfinity;
+  forEachHit(scene, from, direction, within, [&](const Hit& hit) {
+    if (hit.distance >= within && nearest) return;
+    nearest = hit;
+    within = hit.distance;
   });
   return nearest;
 }
@@ -103,7 +108,7 @@ FaceView lookAtFace(const Scene& scene, int axis, bool positive) {
       target[v] = glm::mix(box.lo[v], box.hi[v], 0.22f + 0.285f * static_cast<float>(j));
       std::optional<Hit> nearest;
       bool wall = false;
-      forEachHit(scene, box.center(), target - box.center(), [&](const Hit& hit) {
+      forEachHit(scene, box.center(), target - box.center(), kInfinity, [&](const Hit& hit) {
         if (!nearest || hit.distance < nearest->distance) nearest = hit;
         wall = wall || (hit.front && hit.distance > kNearestWall);
       });
