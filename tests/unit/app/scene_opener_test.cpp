@@ -183,6 +183,27 @@ TEST(SceneOpener, ReadingASceneStopsOnRequest) {
   }
 }
 
+// The last of its stages: its maps are there, its trees are not.
+TEST(SceneOpener, PreparingRaysStopsOnRequest) {
+  BakeRequest bake;
+  bake.file = tests::temporaryFolder() / "prepared.maps";
+  const SceneOptions options = visitOf(SACCADE_SOURCE_DIR "/data/scenes/cornell.glb").scene;
+  openWorkspace(options, bake, {});
+  const std::unique_ptr<Workspace> workspace = readWorkspace(options, bake, {});
+  EXPECT_TRUE(workspace->mapsWereThere);
+  EXPECT_FALSE(workspace->world);
+  std::stop_source stop;
+  const auto stopAtOnce = [&](const OpeningStep& step) {
+    EXPECT_EQ(step.what, "preparing rays");
+    stop.request_stop();
+  };
+  EXPECT_THROW(finishWorkspace(*workspace, stop.get_token(), stopAtOnce), core::Error);
+  EXPECT_FALSE(workspace->world);
+  finishWorkspace(*workspace, {});
+  ASSERT_TRUE(workspace->world);
+  EXPECT_TRUE(workspace->world->hasMaps());
+}
+
 TEST(DroppedScene, IsTheFirstByItsExtension) {
   const DroppedScene one = chooseDropped({"/a/Straße 1.GLB"});
   EXPECT_EQ(one.scene, "/a/Straße 1.GLB");
