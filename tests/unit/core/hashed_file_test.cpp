@@ -37,7 +37,7 @@ TEST(HashedFile, EndsWithTheHashOfWhatComesBefore) {
     ASSERT_EQ(written.size(), sizeof(std::uint32_t) + size + sizeof(std::uint64_t));
     std::uint64_t hash = 0;
     std::memcpy(&hash, &written[written.size() - sizeof hash], sizeof hash);
-    written.resize(written.size() - sizeof hash);
+    written.erase(written.end() - sizeof hash, written.end());
     EXPECT_EQ(HashedFile::hashOf(written), hash) << size;
     EXPECT_TRUE(std::equal(content.begin(), content.end(), written.begin() + sizeof(std::uint32_t)));
     written[written.size() / 2] ^= 1;
