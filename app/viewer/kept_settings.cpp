@@ -121,28 +121,38 @@ Json toJson(const KeptSettings& settings) {
   return root;
 }
 
-}  // namespace
-
-KeptSettings loadSettings() {
+KeptSettings readSettings(spdlog::level::level_enum level) {
   try {
     const std::filesystem::path file = settingsFile();
     if (!std::filesystem::exists(file)) return {};
     const std::vector<std::uint8_t> bytes = core::readWholeFile(file);
     const Json root = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!root.is_object() || !root.contains("version") || root["version"] != kVersion) {
-      spdlog::warn("{}: not this program's settings; starting with the defaults, they replace it at the end",
-                   file.string());
+      spdlog::log(level,
+                  "{}: not this program's settings; starting with the defaults, they replace it at the end",
+                  file.string());
       return {};
     }
     Reader reader(root);
-    const KeptSettings settings = reader.read();
+    KeptSettings settings = reader.read();
     if (!reader.wrong().empty())
-      spdlog::warn("{}: no usable value of {}; going on with the default", file.string(), reader.wrong());
+      spdlog::log(level, "{}: no usable value of {}; going on with the default", file.string(),
+                  reader.wrong());
     return settings;
   } catch (const std::exception& e) {  // core::Error; the file system's
-    spdlog::warn("{}; starting with the default settings", e.what());
+    spdlog::log(level, "{}; starting with the default settings", e.what());
     return {};
   }
+}
+
+}  // namespace
+
+KeptSettings loadSettings() { return readSettings(spdlog::level::warn); }
+
+void changeSettings(const std::function<void(KeptSettings&)>& change) {
+  KeptSettings settings = readSettings(spdlog::level::debug);
+  change(settings);
+  saveSettings(settings);
 }
 
 void saveSettings(const KeptSettings& settings) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct KeptSettings {
 KeptSettings loadSettings();
 /// One warning where that fails. Main thread.
 void saveSettings(const KeptSettings& settings);
+/// Changes what is kept now, so that what another window kept meanwhile stays. Of two that do so within the
+/// same milliseconds one may be lost; the file is whole at any time. Warns of nothing that loadSettings told.
+void changeSettings(const std::function<void(KeptSettings&)>& change);
 
 /// To the front, made absolute.
 void addRecent(KeptSettings& settings, const std::filesystem::path& scene);

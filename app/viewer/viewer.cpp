@@ -80,8 +80,7 @@ class Viewer {
       writeStats(options_.run.statsFile, stats);
     }
     endScene();
-    keepChanges(kept_, startLook_, look());
-    saveSettings(kept_);
+    changeSettings([this](KeptSettings& kept) { keepChanges(kept, startLook_, look()); });
     return status_;
   }
 
@@ -194,7 +193,10 @@ class Viewer {
       return tell(outcome);
     }
     window_.setTitle("Saccade: " + scene);
-    addRecent(kept_, scene);
+    changeSettings([&](KeptSettings& kept) {
+      addRecent(kept, scene);
+      kept_.recent = kept.recent;
+    });
   }
 
   std::unique_ptr<render::BaseRenderer> uploaded(const SceneOpener::Outcome& outcome) {

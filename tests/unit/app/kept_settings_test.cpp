@@ -179,5 +179,34 @@ TEST_F(KeptSettingsFile, AFolderThatCannotBeWrittenIsOneWarning) {
   EXPECT_EQ(warnings(), 1) << said_;
 }
 
+TEST_F(KeptSettingsFile, ChangesLeaveWhatAnotherWindowKept) {
+  KeptSettings kept;
+  kept.fps = 50;
+  addRecent(kept, scene("one.glb"));
+  saveSettings(kept);
+  const KeptSettings start = loadSettings();
+  changeSettings([&](KeptSettings& other) {
+    other.attention = 0.25;
+    other.reuse = false;
+    addRecent(other, scene("two.glb"));
+  });
+  changeSettings([](KeptSettings& now) { now.fps = 30; });
+  const KeptSettings end = loadSettings();
+  EXPECT_EQ(start.fps, 50);
+  EXPECT_EQ(end.fps, 30);
+  EXPECT_EQ(end.attention, 0.25);
+  EXPECT_EQ(end.reuse, false);
+  ASSERT_EQ(end.recent.size(), 2u);
+  EXPECT_EQ(end.recent[0], scene("two.glb"));
+}
+
+TEST_F(KeptSettingsFile, ABrokenFileIsToldOfOnce) {
+  load("{");
+  EXPECT_EQ(warnings(), 1);
+  changeSettings([](KeptSettings& kept) { kept.fps = 30; });
+  EXPECT_EQ(warnings(), 1);
+  EXPECT_EQ(loadSettings().fps, 30);
+}
+
 }  // namespace
 }  // namespace saccade::app
