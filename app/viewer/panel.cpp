@@ -21,7 +21,7 @@ const std::vector<KeyHelp>& keyHelp() {
                                          {"0", "no overlay"},
                                          {"C", "corrections on / off"},
                                          {"R", "reuse of samples on / off"},
-                                         {"Home", "back to the first camera"},
+                                         {"Home", "fly back to the first camera"},
                                          {"B", "keep this place"},
                                          {"F2 to F9", "fly to place 1 to 8"},
                                          {"Control + F2 to F9", "keep this place there instead"},

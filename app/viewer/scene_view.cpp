@@ -44,9 +44,7 @@ SceneView::SceneView(const WalkOptions& options, std::shared_ptr<const Workspace
 }
 
 void SceneView::keyPressed(Key key) {
-  if (key != Key::home) return;
-  tools_.release();
-  walker_.setCamera(home_);
+  if (key == Key::home) tools_.flyTo(home_, walker_.camera(), secondsSince(start_));
 }
 
 void SceneView::look(const core::Vec2& deltaPx) {
