@@ -58,6 +58,7 @@ std::vector<float> gaussianTaps(double sigma, int radius) {
   double sum = 0;
   for (int i = -radius; i <= radius; ++i) sum += taps[i + radius] = std::exp(-0.5 * i * i / (sigma * sigma));
   std::vector<float> result;
+  result.reserve(taps.size());
   for (const double tap : taps) result.push_back(static_cast<float>(tap / sum));
   return result;
 }

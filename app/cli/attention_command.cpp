@@ -95,7 +95,7 @@ core::FixationScores score(const std::string& image, const core::ImageGray& map,
 std::vector<Result> makeMaps(const MapOptions& o) {
   const std::vector<fs::path> files = attentionOutputs(o.images, o.output);
   const core::FixationTable table = readTable(o);
-  if (files.size() > 0 && files[0] != fs::path(o.output)) fs::create_directories(o.output);
+  if (!files.empty() && files[0] != fs::path(o.output)) fs::create_directories(o.output);
   const std::stop_token stop = interruptToken();
   std::optional<ProgressBar> bar;
   if (o.images.size() > 1) bar.emplace("attention");

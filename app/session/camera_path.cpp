@@ -177,6 +177,13 @@ std::size_t middleBeyond(const std::vector<CameraKey>& recorded, const CameraPat
   return beyond.empty() ? from : beyond[beyond.size() / 2];
 }
 
+std::vector<CameraKey> keysAt(const std::vector<CameraKey>& recorded, const std::vector<std::size_t>& kept) {
+  std::vector<CameraKey> keys;
+  keys.reserve(kept.size());
+  for (const std::size_t i : kept) keys.push_back(recorded[i]);
+  return keys;
+}
+
 }  // namespace
 
 std::vector<CameraKey> thinned(const std::vector<CameraKey>& recorded, const PathTolerance& tolerance) {
@@ -184,9 +191,7 @@ std::vector<CameraKey> thinned(const std::vector<CameraKey>& recorded, const Pat
   std::vector<std::size_t> kept{0, recorded.size() - 1};
   for (std::size_t before = 0; before != kept.size();) {
     before = kept.size();
-    std::vector<CameraKey> keys;
-    for (const std::size_t i : kept) keys.push_back(recorded[i]);
-    const CameraPath path = CameraPath::through(keys);
+    const CameraPath path = CameraPath::through(keysAt(recorded, kept));
     std::vector<std::size_t> more;
     for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
       more.push_back(kept[k]);
@@ -196,9 +201,7 @@ std::vector<CameraKey> thinned(const std::vector<CameraKey>& recorded, const Pat
     more.push_back(kept.back());
     kept = std::move(more);
   }
-  std::vector<CameraKey> keys;
-  for (const std::size_t i : kept) keys.push_back(recorded[i]);
-  return keys;
+  return keysAt(recorded, kept);
 }
 
 }  // namespace saccade::app

@@ -42,8 +42,8 @@ core::Camera toCamera(const Json& object) {
     const auto v = object.at(name).get<std::array<float, 3>>();
     return core::Vec3(v[0], v[1], v[2]);
   };
-  const core::Camera camera{object.at("name").get<std::string>(), vector("eye"), vector("at"), vector("up"),
-                            object.at("fov").get<float>()};
+  core::Camera camera{object.at("name").get<std::string>(), vector("eye"), vector("at"), vector("up"),
+                      object.at("fov").get<float>()};
   const core::View check(camera, 1, 1, {core::Vec3(-1), core::Vec3(1)});  // throws for a degenerate one
   return camera;
 }

@@ -26,7 +26,8 @@ std::filesystem::path freeFile(const std::string& stem, const std::string& exten
   for (int i = 1; !failed; ++i) {
     char number[16];
     std::snprintf(number, sizeof number, "_%04d", i);
-    const std::filesystem::path file = folder / (stem + number + extension);
+    std::filesystem::path file = folder / (stem + number);
+    file += extension;
     if (!std::filesystem::exists(file, failed)) return file;
   }
   throw core::Error("the current folder cannot be read: " + failed.message() + "; start in another one");

@@ -1,5 +1,6 @@
 #include "bench/attention/attention.h"
 
+#include <cmath>
 #include <ctime>
 #include <functional>
 #include <memory>
@@ -131,7 +132,7 @@ void drawMaps(Session& session, const core::ImageRgba8& picture) {
   for (const bool orientation : {false, true}) {
     const core::ImageGray map = attention::saliencyOf(picture, {Normalisation::max, orientation});
     put(place++, [&](int x, int y) {
-      const auto code = static_cast<std::uint8_t>(255 * map.at(x, y) + 0.5f);
+      const auto code = static_cast<std::uint8_t>(std::lround(255 * map.at(x, y)));
       return core::Rgba8{code, code, code, 255};
     });
   }

@@ -34,7 +34,7 @@ core::ImageGray squaredErrors(const core::ImageRgb& truth, const core::ImageRgb&
 
 OrderWalk::OrderWalk(const Stage& stage, const app::CameraPath& path, app::ImageSize size, std::uint32_t seed)
     : stage_(stage), size_(size), seed_(seed) {
-  const double begin = std::max(0.0, path.lengthSeconds() / 2 - kFrames / 2 * kFrameSeconds);
+  const double begin = std::max(0.0, path.lengthSeconds() / 2 - 0.5 * kFrames * kFrameSeconds);
   const raytrace::CorrectiveTracer tracer(*stage.workspace->world, {.seed = seed});
   for (int i = 0; i < kFrames; ++i) {
     cameras_.push_back(path.at(begin + i * kFrameSeconds));

@@ -73,8 +73,9 @@ Record errorsOf(const std::string& scene, const std::string& variant, std::uint6
 Record againstOf(const std::string& scene, std::uint64_t samples, const std::map<std::string, Errors>& all) {
   Record record = recordOf(scene, "against", samples);
   const Errors& ours = all.at(kUsual);
-  for (const auto& [name, theirs] : all) {
+  for (const auto& [name, errors] : all) {
     if (name == kUsual) continue;
+    const Errors& theirs = errors;
     const auto over = [&](double WalkError::*figure) {
       std::vector<double> ratios;
       for (std::size_t i = 0; i < theirs.size(); ++i) ratios.push_back(ours[i].*figure / (theirs[i].*figure));

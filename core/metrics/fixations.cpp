@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/math/random.h"
@@ -22,8 +23,8 @@ float pixels(const char* text, const fs::path& file, unsigned line) {
   const char* end = text + std::strlen(text);
   const auto [stopped, failed] = std::from_chars(text, end, value);
   if (failed != std::errc{} || stopped != end || !std::isfinite(value)) {
-    throw Error(file.string() + ": line " + std::to_string(line) + ": '" + std::string(text, 0, 40) +
-                "' is no position in pixels");
+    throw Error(file.string() + ": line " + std::to_string(line) + ": '" +
+                std::string(std::string_view(text).substr(0, 40)) + "' is no position in pixels");
   }
   return value;
 }
