@@ -199,6 +199,13 @@ void XDriver::placeAt(int x, int y) {
   state_->sync();
 }
 
+std::array<int, 4> XDriver::place() const {
+  XWindowAttributes attributes{};
+  XGetWindowAttributes(state_->get(), state_->window, &attributes);
+  const auto [x, y] = state_->onScreen(0, 0);
+  return {x, y, attributes.width, attributes.height};
+}
+
 void XDriver::close() {
   XEvent event{};
   event.xclient = {.type = ClientMessage,
@@ -251,5 +258,27 @@ core::ImageRgba8 XDriver::screen() const {
   XDestroyImage(image);
   return picture;
 }
+
+struct XResources::State {
+  DisplayPtr display;  ///< open until the end: a server may reset once its last client has gone
+  std::string before;
+
+  void set(const std::string& text) const {
+    XChangeProperty(display.get(), DefaultRootWindow(display.get()), XA_RESOURCE_MANAGER, XA_STRING, 8,
+                    PropModeReplace, reinterpret_cast<const unsigned char*>(text.data()),
+                    static_cast<int>(text.size()));
+    XSync(display.get(), False);
+  }
+};
+
+XResources::XResources(const std::string& text) {
+  DisplayPtr display(XOpenDisplay(nullptr));
+  if (!display) throw std::runtime_error("no display");
+  std::string before = property(display.get(), DefaultRootWindow(display.get()), "RESOURCE_MANAGER");
+  state_ = std::make_unique<State>(State{std::move(display), std::move(before)});
+  state_->set(text);
+}
+
+XResources::~XResources() { state_->set(state_->before); }
 
 }  // namespace saccade::tests

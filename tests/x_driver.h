@@ -5,6 +5,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -52,7 +53,9 @@ class XDriver {
 
   void resize(int width, int height);
   void placeAt(int x, int y);  ///< pixels of the screen
-  void close();                ///< the window manager's button: WM_DELETE_WINDOW
+  /// {x, y, width, height} in pixels of the screen, as the X server has them now.
+  std::array<int, 4> place() const;
+  void close();  ///< the window manager's button: WM_DELETE_WINDOW
 
   /// Drags the files from another program (XDND version 5) to a place of the window. The rest happens as the
   /// window answers: call `drop` again and again, in turn with what handles the window's events.
@@ -61,6 +64,20 @@ class XDriver {
 
   /// The part of the screen where the window is, as it is now.
   core::ImageRgba8 screen() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The display's resources, as `xrdb` sets them, until the end; what was there before comes back. Programs
+/// read them when they start: "Xft.dpi:\t192\n" is a display of twice the usual density.
+class XResources {
+ public:
+  explicit XResources(const std::string& text);
+  ~XResources();
+  XResources(const XResources&) = delete;
+  XResources& operator=(const XResources&) = delete;
 
  private:
   struct State;

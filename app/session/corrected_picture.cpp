@@ -93,10 +93,14 @@ void CorrectedPicture::composite() {
   const StageTimer timer(stats_, "composite");
   if (!display_ || displayIsShared_) display_ = std::make_shared<core::ImageRgba8>();
   displayIsShared_ = false;
-  const auto corrections = settings_.corrections ? layer_.pixels() : std::span<const core::Vec4>{};
-  core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections,
+  core::compositeDisplay(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections(),
                          settings_.exposureEv, *display_);
   core::compositeDisplayAt(bare_, frame_->baseAndId, approximated_, settings_.exposureEv, *display_);
+}
+
+/// Empty where they are off.
+std::span<const core::Vec4> CorrectedPicture::corrections() {
+  return settings_.corrections ? layer_.pixels() : std::span<const core::Vec4>{};
 }
 
 void CorrectedPicture::listBare() {
@@ -129,7 +133,7 @@ std::shared_ptr<const core::ImageRgba8> CorrectedPicture::shareDisplay() {
 
 core::ImageRgb CorrectedPicture::linear() {
   core::ImageRgb sum =
-      core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId, layer_.pixels());
+      core::compositeLinear(frame_->view.width(), frame_->view.height(), frame_->baseAndId, corrections());
   approximate();
   for (std::size_t i = 0; i < bare_.size(); ++i) sum.at(bare_[i].x, bare_[i].y) += approximated_[i];
   return sum;

@@ -80,7 +80,8 @@ class CorrectedPicture {
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite
   /// The same for another thread: the next composite goes into another image.
   std::shared_ptr<const core::ImageRgba8> shareDisplay();
-  /// Base + correction as they are now, with the approximation where it is on and nothing is corrected yet.
+  /// Base + correction as they are now, with the approximation where it is on and nothing is corrected yet;
+  /// the base alone where corrections are off.
   core::ImageRgb linear();
   render::CorrectionLayer& layer() { return layer_; }
   const render::CorrectionLayer& layer() const { return layer_; }
@@ -93,6 +94,7 @@ class CorrectedPicture {
   bool drawResumed(const core::View& view);
   void warp();
   void showExact();
+  std::span<const core::Vec4> corrections();
   void listBare();
   void approximate();
 

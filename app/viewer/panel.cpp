@@ -89,6 +89,7 @@ void drawOverlayChoice(PanelState& s, const PanelView& view) {
   const char* current = s.overlay ? aovNames()[static_cast<std::size_t>(*s.overlay)].c_str() : "none";
   if (ImGui::BeginCombo("shown", current)) {
     if (ImGui::Selectable("none", !s.overlay)) s.overlay.reset();
+    view.items.note("overlay none");
     for (std::size_t i = 0; i < aovNames().size(); ++i) {
       const auto aov = static_cast<Aov>(i);
       if (ImGui::Selectable(aovNames()[i].c_str(), s.overlay == aov)) s.overlay = aov;

@@ -55,8 +55,8 @@ class Viewer {
         afterFrame_(afterFrame),
         kept_(std::move(kept)),
         panel_(firstPanel(options, kept_)),
-        window_(firstSize(options, kept_).width, firstSize(options, kept_).height, "Saccade"),
-        uiScale_(options.uiScale.value_or(window_.contentScale())),
+        uiScale_(options.uiScale ? *options.uiScale : render::displayScale()),
+        window_(firstSize().width, firstSize().height, "Saccade"),
         presenter_(window_.context()),
         imgui_(window_, static_cast<float>(uiScale_)),
         opener_(openVisit) {
@@ -86,9 +86,9 @@ class Viewer {
 
  private:
   /// Panel included.
-  static ImageSize firstSize(const WalkOptions& options, const KeptSettings& kept) {
-    if (kept.window && !options.given.size) return *kept.window;
-    return {options.size.width + panelPixels(options.uiScale.value_or(1)), options.size.height};
+  ImageSize firstSize() const {
+    if (kept_.window && !options_.given.size) return *kept_.window;
+    return {options_.size.width + panelPixels(uiScale_), options_.size.height};
   }
   WindowLook look() const {
     const auto [width, height] = window_.windowedSize();
@@ -106,8 +106,11 @@ class Viewer {
 
   void frame() {
     const Clock::time_point start = Clock::now();
-    for (const render::Event& event : window_.pollEvents())
-      std::visit([this](const auto& e) { handle(e); }, event);
+    if (std::exchange(fullscreenChanges_, false)) window_.setFullscreen(!window_.fullscreen());
+    const std::vector<render::Event> events = window_.pollEvents();
+    // Before the events: whether the panel wants the mouse then depends on where it is now.
+    imgui_.newFrame(window_.width(), window_.height());
+    for (const render::Event& event : events) std::visit([this](const auto& e) { handle(e); }, event);
     if (auto outcome = opener_.take())
       show(*outcome);
     else
@@ -116,6 +119,7 @@ class Viewer {
     const ImageSize size{window_.width() - panelWidth(), window_.height()};
     if (size.width < 1 || size.height < 1) {  // minimised, or narrower than the panel
       std::this_thread::sleep_for(kIdlePause);
+      imgui_.render();
     } else {
       drawFrame(size, start);
     }
@@ -139,7 +143,6 @@ class Viewer {
     const core::ImageRgba8& shown = scene_ ? scene_->shown(panel_) : firstPicture(size);
     window_.bind();
     presenter_.present(shown, {0, 0, size.width, size.height}, window_.width(), window_.height());
-    imgui_.newFrame(window_.width(), window_.height());
     items_.clear();
     drawPanels(size);
     imgui_.render();
@@ -264,6 +267,7 @@ class Viewer {
     ViewerState state{panel_, items_};
     state.width = window_.width();
     state.height = window_.height();
+    state.panelWidth = panelWidth();
     state.fullscreen = window_.fullscreen();
     state.mouseCaptured = window_.mouseCaptured();
     if (const auto opening = opener_.state()) state.opening = opening->scene;
@@ -284,7 +288,7 @@ class Viewer {
         panel_.showKeys = !panel_.showKeys;
         break;
       case Key::f11:
-        window_.setFullscreen(!window_.fullscreen());
+        fullscreenChanges_ = true;
         break;
       case Key::f12:
         (window_.isDown(Key::shift) ? panel_.exrWanted : panel_.screenshotWanted) = true;
@@ -349,8 +353,8 @@ class Viewer {
   const ViewerObserver& afterFrame_;
   KeptSettings kept_;
   PanelState panel_;
-  render::Window window_;
   double uiScale_;  ///< of letters and panel: 1 on a display of about 96 dots an inch
+  render::Window window_;
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
   WindowLook startLook_;
@@ -365,6 +369,7 @@ class Viewer {
   UiItems items_;
   StageTimes times_;
   ClickDetector leftButton_;
+  bool fullscreenChanges_ = false;  ///< before the next frame: this one has begun
   bool open_ = true;
   bool closing_ = false;  ///< this frame is the last
   Clock::time_point start_ = Clock::now();

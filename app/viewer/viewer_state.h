@@ -15,6 +15,7 @@ struct ViewerState {
   const PanelState& panel;
   const UiItems& items;       ///< what the frame's panel and windows hold
   int width = 0, height = 0;  ///< framebuffer pixels, panel included; 0 x 0 while minimised
+  int panelWidth = 0;         ///< of those; 0 without a panel
   bool fullscreen = false;
   bool mouseCaptured = false;
   std::string scene;                     ///< path of the open scene; empty: none

@@ -183,6 +183,13 @@ void Window::State::installCallbacks() {
   });
 }
 
+float displayScale() {
+  const Library library;
+  float x = 1, y = 1;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) glfwGetMonitorContentScale(monitor, &x, &y);
+  return std::clamp(std::max(x, y), 0.5f, 4.0f);
+}
+
 Window::Window(int width, int height, const std::string& title)
     : state_(std::make_unique<State>(width, height, title)) {
   state_->installCallbacks();
@@ -230,12 +237,6 @@ void Window::setMouseCaptured(bool captured) {
 }
 bool Window::mouseCaptured() const {
   return glfwGetInputMode(state_->window.get(), GLFW_CURSOR) == GLFW_CURSOR_DISABLED;
-}
-
-float Window::contentScale() const {
-  float x = 1, y = 1;
-  glfwGetWindowContentScale(state_->window.get(), &x, &y);
-  return std::clamp(std::max(x, y), 0.5f, 4.0f);
 }
 
 void Window::setFullscreen(bool on) {

@@ -60,6 +60,10 @@ struct DropEvent {
 using Event =
     std::variant<KeyEvent, MouseButtonEvent, MouseMoveEvent, ScrollEvent, ResizeEvent, CloseEvent, DropEvent>;
 
+/// How much larger than usual letters should be for the main display, in [0.5, 4]: 1 at about 96 dots an
+/// inch. While there is no window: how large one must be may depend on it. Throws core::Error as Window does.
+float displayScale();
+
 class Window {
  public:
   /// Framebuffer of about this size in pixels; current on the calling thread. Throws core::Error saying what
@@ -79,9 +83,6 @@ class Window {
 
   int width() const;   ///< framebuffer pixels
   int height() const;  ///< framebuffer pixels
-  /// How much larger than usual letters should be for the display the window is on: 1 at about 96 dots an
-  /// inch.
-  float contentScale() const;
   void setTitle(const std::string& title);
   /// Swap waits for the display's refresh; off at first (the frame loop has its own clock).
   void setVsync(bool on);

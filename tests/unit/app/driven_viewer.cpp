@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 #include <utility>
@@ -197,7 +198,7 @@ void DrivenViewer::dragOn(const std::string& item, double fromPart, double toPar
 }
 
 render::PixelRect DrivenViewer::pictureArea() const {
-  return {0, 0, state().width - (state().panel.visible ? app::kPanelWidth : 0), state().height};
+  return {0, 0, state().width - state().panelWidth, state().height};
 }
 
 core::ImageRgba8 DrivenViewer::picture() const { return crop(screen(), pictureArea()); }
@@ -237,6 +238,27 @@ core::ImageRgba8 crop(const core::ImageRgba8& image, const render::PixelRect& ar
     for (int x = 0; x < part.width(); ++x) part.at(x, y) = image.at(left + x, top + y);
   }
   return part;
+}
+
+std::uint32_t largestOf(const core::FrameSnapshot& frame) {
+  std::uint32_t largest = 1;
+  for (std::uint32_t id = 1; id < frame.extents.size(); ++id)
+    if (frame.extents[id].pixels > frame.extents[largest].pixels) largest = id;
+  return largest;
+}
+
+std::pair<int, int> pixelOf(const core::FrameSnapshot& frame, std::uint32_t id) {
+  const core::ObjectExtent& extent = frame.extents.at(id);
+  int x = 0, y = 0;
+  double nearest = 1e9;
+  for (int py = extent.box.y0; py < extent.box.y1; ++py) {
+    for (int px = extent.box.x0; px < extent.box.x1; ++px) {
+      const double off =
+          std::hypot(px - 0.5 * (extent.box.x0 + extent.box.x1), py - 0.5 * (extent.box.y0 + extent.box.y1));
+      if (frame.idAt(px, py) == id && off < nearest) nearest = off, x = px, y = py;
+    }
+  }
+  return {x, y};
 }
 
 std::size_t pixelsThatDiffer(const core::ImageRgba8& a, const core::ImageRgba8& b) {

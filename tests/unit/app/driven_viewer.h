@@ -7,6 +7,7 @@
 #include <semaphore>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "app/cli/walk_options.h"
 #include "app/viewer/viewer.h"
@@ -90,6 +91,11 @@ class DrivenViewer {
   bool closed_ = false;  ///< runViewer has returned
   std::thread thread_;
 };
+
+/// The object with corrections that has most pixels.
+std::uint32_t largestOf(const core::FrameSnapshot& frame);
+/// {x, y} of the object's pixel that is nearest to the middle of its box.
+std::pair<int, int> pixelOf(const core::FrameSnapshot& frame, std::uint32_t id);
 
 core::ImageRgba8 crop(const core::ImageRgba8& image, const render::PixelRect& area);
 /// How many pixels differ; images of different size differ everywhere.

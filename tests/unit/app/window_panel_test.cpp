@@ -5,8 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
+#include "core/composite.h"
 #include "core/image_io.h"
+#include "render/window/window.h"
 #include "tests/unit/app/driven_viewer.h"
 #include "tests/unit/app/fixtures.h"
 
@@ -147,6 +151,165 @@ TEST_F(WindowPanel, OverlaysByKey) {
     viewer.until("no overlay", [&] { return !viewer.state().panel.overlay; });
     viewer.untilConverged();
     EXPECT_EQ(viewer.picture().pixels(), plain.pixels());
+  });
+  EXPECT_EQ(status, 0);
+}
+
+/// The panel's part of the screen.
+core::ImageRgba8 panelOf(const DrivenViewer& viewer) {
+  const app::ViewerState& state = viewer.state();
+  return crop(viewer.screen(), {state.width - state.panelWidth, 0, state.panelWidth, state.height});
+}
+
+using Color = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;
+std::set<Color> colorsOf(const core::ImageRgba8& image) {
+  std::set<Color> colors;
+  for (const core::Rgba8& c : image.pixels()) colors.insert({c.r, c.g, c.b});
+  return colors;
+}
+
+/// How far the nearest of them is, in the channel that differs most.
+int distanceTo(const std::set<Color>& colors, const Color& from) {
+  const auto [r, g, b] = from;
+  int nearest = 255;
+  for (const auto& [r2, g2, b2] : colors)
+    nearest = std::min(nearest, std::max({std::abs(r - r2), std::abs(g - g2), std::abs(b - b2)}));
+  return nearest;
+}
+
+/// Opens the list of overlays and clicks on one.
+void chooseByMouse(DrivenViewer& viewer, const std::string& name) {
+  viewer.clickOn("overlay");
+  viewer.until("the list is open", [&] { return viewer.state().items.at("overlay " + name).width > 0; });
+  viewer.frames(2);  // the list finds its size in its first ones
+  viewer.clickOn("overlay " + name);
+  viewer.until("the list is gone", [&] { return viewer.state().items.at("overlay none").width == 0; });
+  viewer.x().moveTo(100, 100);  // nothing in the panel is lit up
+  viewer.frames(3);
+}
+
+// Categories are drawn in the very colours of their legend's squares.
+TEST_F(WindowPanel, AnOverlayChosenByMouseHasItsLegendBesideIt) {
+  const int status = DrivenViewer::run(drivenOptions(), [](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    viewer.untilConverged();
+    const core::ImageRgba8 plain = viewer.picture();
+    for (const app::Aov aov : {app::Aov::id, app::Aov::level}) {
+      const std::string& name = app::aovNames()[static_cast<std::size_t>(aov)];
+      chooseByMouse(viewer, name);
+      ASSERT_EQ(viewer.state().panel.overlay, aov);
+      const std::set<Color> colors = colorsOf(viewer.picture());
+      ASSERT_GE(colors.size(), 3u) << name;
+      ASSERT_LE(colors.size(), app::AovLegend::kMostSwatches + 1) << name;  // and black
+      const core::ImageRgba8 panel = panelOf(viewer);
+      for (const auto& [r, g, b] : colors) {
+        EXPECT_GE(pixelsOf(panel, {r, g, b, 255}), 100u)
+            << name << " has no square of " << int{r} << " " << int{g} << " " << int{b};
+      }
+    }
+    chooseByMouse(viewer, "none");
+    EXPECT_FALSE(viewer.state().panel.overlay);
+    viewer.untilConverged();
+    EXPECT_EQ(viewer.picture().pixels(), plain.pixels());
+  });
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(WindowPanel, ARampsColoursAreInItsLegend) {
+  const int status = DrivenViewer::run(drivenOptions(), [](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    viewer.untilConverged();
+    chooseByMouse(viewer, "saliency");
+    ASSERT_EQ(viewer.state().panel.overlay, app::Aov::saliency);
+    const std::set<Color> legend = colorsOf(panelOf(viewer)), seen = colorsOf(viewer.picture());
+    EXPECT_GT(seen.size(), 30u);
+    int farthest = 0;
+    for (const Color& color : seen) farthest = std::max(farthest, distanceTo(legend, color));
+    // The legend has 64 of the ramp's colours; half of what lies between two of them.
+    EXPECT_LE(farthest, 4);
+  });
+  EXPECT_EQ(status, 0);
+}
+
+// Pointer and button in one frame: what counts is where the pointer is, not where it was a frame before.
+TEST_F(WindowPanel, AHastyClickIsWhereThePointerIs) {
+  const int status = DrivenViewer::run(drivenOptions(), [](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    viewer.untilConverged();
+    const core::FrameSnapshot& frame = viewer.state().loop->frame();
+    const std::uint32_t id = largestOf(frame);
+    const auto [x, y] = pixelOf(frame, id);
+    const render::PixelRect reuse = viewer.state().items.at("reuse");
+    viewer.x().moveTo(reuse.x + 5, reuse.y + 5);
+    viewer.frames(3);
+    viewer.x().click(x, y);
+    viewer.until("the object is picked",
+                 [&] { return viewer.state().tools->picked() && viewer.state().tools->picked()->id == id; });
+    const core::Camera before = *viewer.state().camera;
+    viewer.x().moveTo(100, 100);
+    viewer.frames(3);
+    viewer.x().click(reuse.x + 5, reuse.y + 5);
+    viewer.until("the box in the panel is ticked", [&] { return !viewer.state().panel.reuse; });
+    EXPECT_EQ(viewer.state().tools->picked()->id, id);
+    EXPECT_TRUE(viewer.state().camera->samePicture(before));
+  });
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(WindowPanel, AnExrIsTheLightThatIsShown) {
+  app::WalkOptions options = drivenOptions();
+  options.run.exposureEv = 0.5f;
+  core::Camera camera;
+  const app::Workspace& workspace = workspaceOf(bundled("cornell.glb"));  // the viewer bakes the same maps
+  const int status = DrivenViewer::run(options, [&](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    viewer.untilConverged();
+    const core::ImageRgba8 shown = viewer.picture();
+    camera = *viewer.state().camera;
+    viewer.x().keyDown("Shift_L");
+    viewer.x().press("F12");
+    viewer.until("a message", [&] { return viewer.state().panel.message.ends_with("saccade_0001.exr"); });
+    viewer.x().keyUp("Shift_L");
+    const core::ImageRgb light = core::readExr("saccade_0001.exr");
+    EXPECT_EQ(largestDifference(light, rayTraced(workspace, viewer.state().loop->frame())), 0);
+    EXPECT_EQ(core::toDisplay(light, 0.5f).pixels(), shown.pixels());
+    // Neither overlay nor exposure is light.
+    viewer.x().press("1");
+    viewer.dragOn("exposure", 0.5, 0.7);
+    viewer.until("an overlay in another exposure", [&] {
+      return viewer.state().panel.overlay && std::abs(viewer.state().panel.exposureEv - 0.5f) > 0.5f;
+    });
+    viewer.clickOn("exr");
+    viewer.until("a second file", [&] { return viewer.state().panel.message.ends_with("saccade_0002.exr"); });
+    EXPECT_EQ(core::readExr("saccade_0002.exr").pixels(), light.pixels());
+    EXPECT_FALSE(std::filesystem::exists("saccade_0001.png")) << "Shift saves no screenshot beside it";
+  });
+  EXPECT_EQ(status, 0);
+  // As `saccade render` makes it of the same camera, without a window.
+  app::Headless gl(runOn("osmesa"), workspace);
+  app::FrameLoop still(workspace, *gl.renderer, {});
+  still.step(camera, options.size, app::FrameBudget::untilConverged());
+  if (render::Window(64, 64, "").context().renderer() == gl.context->renderer()) {
+    EXPECT_EQ(largestDifference(core::readExr("saccade_0001.exr"), still.linear()), 0);
+  }
+}
+
+TEST_F(WindowPanel, AnExrWithoutCorrectionsIsTheBaseLayer) {
+  const int status = DrivenViewer::run(drivenOptions(), [](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    viewer.untilConverged();
+    viewer.x().press("c");
+    viewer.until("the base layer alone", [&] {
+      return !viewer.state().panel.corrections &&
+             viewer.picture().pixels() == viewer.state().loop->display().pixels();
+    });
+    viewer.clickOn("exr");
+    viewer.until("a message", [&] { return viewer.state().panel.message.ends_with("saccade_0001.exr"); });
+    const core::ImageRgb light = core::readExr("saccade_0001.exr");
+    const core::FrameSnapshot& frame = viewer.state().loop->frame();
+    EXPECT_EQ(light.pixels(),
+              core::compositeLinear(light.width(), light.height(), frame.baseAndId, {}).pixels());
+    EXPECT_EQ(core::toDisplay(light, 0).pixels(), viewer.picture().pixels());
   });
   EXPECT_EQ(status, 0);
 }

@@ -2,7 +2,6 @@
 // step asserted on the viewer's state and on the screen.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -31,28 +30,6 @@ std::filesystem::path copied(const std::string& scene, const std::string& name) 
 void drop(DrivenViewer& viewer, const std::vector<std::filesystem::path>& files) {
   viewer.x().beginDrop(files, 100, 100);
   viewer.until("the drop is taken", [&] { return viewer.x().drop() == Drop::accepted; });
-}
-
-/// In the middle of the pixels of an object that gets corrections.
-std::pair<int, int> pixelOf(const core::FrameSnapshot& frame, std::uint32_t id) {
-  const core::ObjectExtent& extent = frame.extents.at(id);
-  int x = 0, y = 0;
-  double nearest = 1e9;
-  for (int py = extent.box.y0; py < extent.box.y1; ++py) {
-    for (int px = extent.box.x0; px < extent.box.x1; ++px) {
-      const double off =
-          std::hypot(px - 0.5 * (extent.box.x0 + extent.box.x1), py - 0.5 * (extent.box.y0 + extent.box.y1));
-      if (frame.idAt(px, py) == id && off < nearest) nearest = off, x = px, y = py;
-    }
-  }
-  return {x, y};
-}
-
-std::uint32_t largestOf(const core::FrameSnapshot& frame) {
-  std::uint32_t largest = 1;
-  for (std::uint32_t id = 1; id < frame.extents.size(); ++id)
-    if (frame.extents[id].pixels > frame.extents[largest].pixels) largest = id;
-  return largest;
 }
 
 TEST_F(WindowScenes, ADroppedSceneIsOpenedBesideTheOldOne) {

@@ -123,6 +123,8 @@ TEST_F(WindowWalk, FullScreenAndBack) {
   const int status = DrivenViewer::run(drivenOptions(), [](DrivenViewer& viewer) {
     viewer.untilOpen();
     const int width = viewer.state().width, height = viewer.state().height;
+    viewer.x().placeAt(37, 53);
+    viewer.until("it is elsewhere", [&] { return viewer.x().place() == std::array{37, 53, width, height}; });
     viewer.x().press("F11");
     viewer.until("full screen", [&] { return viewer.state().fullscreen && viewer.state().width > width; });
     EXPECT_EQ(viewer.screen().width(), viewer.state().width);
@@ -131,10 +133,12 @@ TEST_F(WindowWalk, FullScreenAndBack) {
       return viewer.state().loop->display().width() == viewer.pictureArea().width &&
              viewer.picture().pixels() == viewer.state().loop->display().pixels();
     });
+    EXPECT_EQ(viewer.x().place(), (std::array{0, 0, viewer.state().width, viewer.state().height}));
     viewer.x().press("F11");
     viewer.until("a window again", [&] {
       return !viewer.state().fullscreen && viewer.state().width == width && viewer.state().height == height;
     });
+    EXPECT_EQ(viewer.x().place(), (std::array{37, 53, width, height})) << "where it was";
     viewer.untilConverged();
   });
   EXPECT_EQ(status, 0);
