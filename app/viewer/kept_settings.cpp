@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/cache_folder.h"
@@ -104,8 +105,6 @@ class Reader {
   std::string wrong_;
 };
 
-std::filesystem::path settingsFile() { return core::configFolder() / "settings.json"; }
-
 Json toJson(const KeptSettings& settings) {
   Json root{{"version", kVersion}};
   if (settings.window) root["window"] = {settings.window->width, settings.window->height};
@@ -121,51 +120,84 @@ Json toJson(const KeptSettings& settings) {
   return root;
 }
 
-KeptSettings readSettings(spdlog::level::level_enum level) {
+std::filesystem::path besideIt(const std::filesystem::path& file) { return file.string() + ".broken"; }
+
+/// What the file holds; nothing where it is none of ours or cannot be read, `fault` is why then. Names of
+/// values that are wrong are appended to `wrong`.
+std::optional<KeptSettings> readSettings(const std::filesystem::path& file, std::string& fault,
+                                         std::string& wrong) {
   try {
-    const std::filesystem::path file = settingsFile();
-    if (!std::filesystem::exists(file)) return {};
+    if (!std::filesystem::exists(file)) return KeptSettings{};
     const std::vector<std::uint8_t> bytes = core::readWholeFile(file);
     const Json root = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!root.is_object() || !root.contains("version") || root["version"] != kVersion) {
-      spdlog::log(level,
-                  "{}: not this program's settings; starting with the defaults, they replace it at the end",
-                  file.string());
-      return {};
+      fault = file.string() + ": not this program's settings";
+      return std::nullopt;
     }
     Reader reader(root);
     KeptSettings settings = reader.read();
-    if (!reader.wrong().empty())
-      spdlog::log(level, "{}: no usable value of {}; going on with the default", file.string(),
-                  reader.wrong());
+    wrong = reader.wrong();
     return settings;
   } catch (const std::exception& e) {  // core::Error; the file system's
-    spdlog::log(level, "{}; starting with the default settings", e.what());
-    return {};
+    fault = e.what();
+    return std::nullopt;
   }
+}
+
+/// Throws core::Error: then it is still there.
+void putAside(const std::filesystem::path& file) {
+  std::error_code failed;
+  std::filesystem::rename(file, besideIt(file), failed);
+  if (failed)
+    throw core::Error(file.string() + ": cannot be moved to " + besideIt(file).string() + " (" +
+                      failed.message() + ")");
 }
 
 }  // namespace
 
-KeptSettings loadSettings() { return readSettings(spdlog::level::warn); }
-
-void changeSettings(const std::function<void(KeptSettings&)>& change) {
-  KeptSettings settings = readSettings(spdlog::level::debug);
-  change(settings);
-  saveSettings(settings);
+SettingsFile::SettingsFile() {
+  try {
+    file_ = core::configFolder() / "settings.json";
+  } catch (const core::Error& e) {
+    spdlog::warn("{}; the window's settings are not kept", e.what());
+  }
 }
 
-void saveSettings(const KeptSettings& settings) {
+KeptSettings SettingsFile::load() const {
+  if (file_.empty()) return {};
+  std::string fault, wrong;
+  const std::optional<KeptSettings> settings = readSettings(file_, fault, wrong);
+  if (!settings)
+    spdlog::warn("{}; starting with the defaults; the first change moves it to {}", fault,
+                 besideIt(file_).filename().string());
+  if (!wrong.empty())
+    spdlog::warn("{}: no usable value of {}; going on with the default", file_.string(), wrong);
+  return settings.value_or(KeptSettings{});
+}
+
+void SettingsFile::change(const std::function<void(KeptSettings&)>& change) {
+  if (file_.empty()) return;
+  std::string fault, wrong;
+  const std::optional<KeptSettings> kept = readSettings(file_, fault, wrong);
+  KeptSettings settings = kept.value_or(KeptSettings{});
+  const Json before = toJson(settings);
+  change(settings);
+  if (toJson(settings) == before) return;
   try {
-    const std::filesystem::path file = settingsFile();
-    std::error_code failed;
-    std::filesystem::create_directories(file.parent_path(), failed);  // else the writing says why
-    // File names may be any bytes, JSON is UTF-8: such a name is not found again, which leaves it out.
-    const std::string text = toJson(settings).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-    core::writeFileAtomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    if (!kept) putAside(file_);
+    write(settings);
   } catch (const core::Error& e) {
-    spdlog::warn("{}; the window's settings are not kept (XDG_CONFIG_HOME names another folder)", e.what());
+    if (!std::exchange(warned_, true))
+      spdlog::warn("{}; the window's settings are not kept (XDG_CONFIG_HOME names another folder)", e.what());
   }
+}
+
+void SettingsFile::write(const KeptSettings& settings) const {
+  std::error_code failed;
+  std::filesystem::create_directories(file_.parent_path(), failed);  // else the writing says why
+  // File names may be any bytes, JSON is UTF-8: such a name is not found again, which leaves it out.
+  const std::string text = toJson(settings).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  core::writeFileAtomically(file_, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 void addRecent(KeptSettings& settings, const std::filesystem::path& scene) {

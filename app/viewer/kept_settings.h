@@ -30,14 +30,28 @@ struct KeptSettings {
   std::vector<std::filesystem::path> recent;
 };
 
-/// What saveSettings wrote, less recent files that are gone. What cannot be read is as never changed; one
-/// warning says so. No file: nothing was changed. Main thread.
-KeptSettings loadSettings();
-/// One warning where that fails. Main thread.
-void saveSettings(const KeptSettings& settings);
-/// Changes what is kept now, so that what another window kept meanwhile stays. Of two that do so within the
-/// same milliseconds one may be lost; the file is whole at any time. Warns of nothing that loadSettings told.
-void changeSettings(const std::function<void(KeptSettings&)>& change);
+/// The file of them. One thread at a time.
+class SettingsFile {
+ public:
+  /// Finds its place, it need not be there. Where there is no place for it one warning says that nothing is
+  /// kept.
+  SettingsFile();
+
+  /// What was kept, less recent scenes that are gone. What cannot be read is as never changed, which one
+  /// warning says. No file: nothing was changed.
+  KeptSettings load() const;
+  /// Changes what is kept now, so that what another window kept meanwhile stays. Of two that do so within the
+  /// same milliseconds one may be lost; the file is whole at any time. One that load could not read is kept
+  /// beside the new one, under its name and ".broken" (the last one of several). Where nothing can be written
+  /// one warning says so, and no more. What changes nothing writes nothing.
+  void change(const std::function<void(KeptSettings&)>& change);
+
+ private:
+  void write(const KeptSettings& settings) const;
+
+  std::filesystem::path file_;  ///< empty: no place
+  bool warned_ = false;         ///< that nothing can be written
+};
 
 /// To the front, made absolute.
 void addRecent(KeptSettings& settings, const std::filesystem::path& scene);

@@ -33,10 +33,10 @@ namespace saccade::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using render::Key;
 
 /// Before main, after the libraries were loaded.
 const Clock::time_point kProgramStart = Clock::now();
-using render::Key;
 
 constexpr std::chrono::milliseconds kIdlePause{20};  ///< of frames that show no scene
 
@@ -50,9 +50,12 @@ int panelPixels(double uiScale) { return static_cast<int>(std::lround(kPanelWidt
 /// another.
 class Viewer {
  public:
-  Viewer(const WalkOptions& options, const ViewerObserver& afterFrame, KeptSettings kept)
+  /// `kept`: from `settings`.
+  Viewer(const WalkOptions& options, const ViewerObserver& afterFrame, SettingsFile& settings,
+         KeptSettings kept)
       : options_(options),
         afterFrame_(afterFrame),
+        settings_(settings),
         kept_(std::move(kept)),
         panel_(firstPanel(options, kept_)),
         uiScale_(options.uiScale ? *options.uiScale : render::displayScale()),
@@ -80,7 +83,7 @@ class Viewer {
       writeStats(options_.run.statsFile, stats);
     }
     endScene();
-    changeSettings([this](KeptSettings& kept) { keepChanges(kept, startLook_, look()); });
+    settings_.change([this](KeptSettings& kept) { keepChanges(kept, startLook_, look()); });
     return status_;
   }
 
@@ -196,7 +199,7 @@ class Viewer {
       return tell(outcome);
     }
     window_.setTitle("Saccade: " + scene);
-    changeSettings([&](KeptSettings& kept) {
+    settings_.change([&](KeptSettings& kept) {
       addRecent(kept, scene);
       kept_.recent = kept.recent;
     });
@@ -351,6 +354,7 @@ class Viewer {
 
   const WalkOptions& options_;
   const ViewerObserver& afterFrame_;
+  SettingsFile& settings_;
   KeptSettings kept_;
   PanelState panel_;
   double uiScale_;  ///< of letters and panel: 1 on a display of about 96 dots an inch
@@ -379,10 +383,11 @@ class Viewer {
 }  // namespace
 
 int runViewer(const WalkOptions& asked, const ViewerObserver& afterFrame) {
-  KeptSettings kept = loadSettings();
+  SettingsFile settings;
+  KeptSettings kept = settings.load();
   const WalkOptions options = withKept(asked, kept);
   render::setSoftwareRasterThreads(rasterThreads(std::max(1, tracerThreads(options.run))));
-  return Viewer(options, afterFrame, std::move(kept)).run();
+  return Viewer(options, afterFrame, settings, std::move(kept)).run();
 }
 
 }  // namespace saccade::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -37,7 +38,11 @@ class KeptSettingsFile : public testing::Test {
   KeptSettings load(const std::string& text) {
     std::ofstream(file_) << text;
     forget();
-    return loadSettings();
+    return SettingsFile().load();
+  }
+  /// Keeps these instead of what was kept.
+  static void save(const KeptSettings& settings) {
+    SettingsFile().change([&](KeptSettings& kept) { kept = settings; });
   }
   std::ptrdiff_t warnings() {
     hear();
@@ -46,6 +51,10 @@ class KeptSettingsFile : public testing::Test {
   void forget() {
     hear();
     said_.clear();
+  }
+  static std::string textOf(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
   }
   std::filesystem::path scene(const std::string& name) {
     const std::filesystem::path file = folder_.path() / name;
@@ -81,8 +90,8 @@ TEST_F(KeptSettingsFile, AllComesBack) {
   kept.exposureEv = -1.5;
   kept.delta = 0.3;
   addRecent(kept, scene("a.glb"));
-  saveSettings(kept);
-  const KeptSettings back = loadSettings();
+  save(kept);
+  const KeptSettings back = SettingsFile().load();
   ASSERT_TRUE(back.window);
   EXPECT_EQ(back.window->width, 1000);
   EXPECT_EQ(back.window->height, 700);
@@ -101,9 +110,9 @@ TEST_F(KeptSettingsFile, AllComesBack) {
 }
 
 TEST_F(KeptSettingsFile, NothingChangedIsNothingKept) {
-  EXPECT_FALSE(loadSettings().attention);
-  saveSettings({});
-  const KeptSettings back = loadSettings();
+  EXPECT_FALSE(SettingsFile().load().attention);
+  save({});
+  const KeptSettings back = SettingsFile().load();
   EXPECT_FALSE(back.window || back.fullscreen || back.panelVisible || back.errorPlotOpen ||
                back.corrections || back.reuse || back.attention || back.fps || back.exposureEv || back.delta);
   EXPECT_TRUE(back.recent.empty());
@@ -148,10 +157,10 @@ TEST_F(KeptSettingsFile, RecentScenesAreNewestFirstWithoutRepeats) {
   addRecent(kept, files[5].parent_path() / "." / files[5].filename());
   EXPECT_EQ(kept.recent.front(), files[5]);
   EXPECT_EQ(std::count(kept.recent.begin(), kept.recent.end(), files[5]), 1);
-  saveSettings(kept);
+  save(kept);
   std::filesystem::remove(files[7]);
   std::erase(kept.recent, files[7]);
-  EXPECT_EQ(loadSettings().recent, kept.recent);
+  EXPECT_EQ(SettingsFile().load().recent, kept.recent);
   EXPECT_EQ(warnings(), 0) << said_;
   addRecent(kept, "somewhere.glb");
   EXPECT_EQ(kept.recent.front(), std::filesystem::current_path() / "somewhere.glb");
@@ -161,8 +170,8 @@ TEST_F(KeptSettingsFile, ANameThatIsNoTextIsLeftOut) {
   KeptSettings kept;
   addRecent(kept, scene("\xff.glb"));
   addRecent(kept, scene("good.glb"));
-  saveSettings(kept);
-  const KeptSettings back = loadSettings();
+  save(kept);
+  const KeptSettings back = SettingsFile().load();
   ASSERT_EQ(back.recent.size(), 1u);
   EXPECT_EQ(back.recent.front().filename(), "good.glb");
 }
@@ -170,28 +179,53 @@ TEST_F(KeptSettingsFile, ANameThatIsNoTextIsLeftOut) {
 TEST_F(KeptSettingsFile, AFolderThatCannotBeWrittenIsOneWarning) {
   std::filesystem::remove_all(file_.parent_path());
   std::ofstream(file_.parent_path()) << "no folder";
-  saveSettings({});
+  SettingsFile file;
+  for (const double fps : {20.0, 30.0, 40.0}) file.change([&](KeptSettings& kept) { kept.fps = fps; });
   EXPECT_EQ(warnings(), 1) << said_;
-  forget();
-  std::filesystem::remove(file_.parent_path());
-  std::filesystem::create_directories(file_);  // a folder of the file's name
-  EXPECT_FALSE(loadSettings().fps);
+  EXPECT_NE(said_.find("not kept"), std::string::npos) << said_;
+}
+
+TEST_F(KeptSettingsFile, AFolderOfTheFilesNameIsOneWarningAndMovesAside) {
+  std::filesystem::create_directories(file_);
+  EXPECT_FALSE(SettingsFile().load().fps);
   EXPECT_EQ(warnings(), 1) << said_;
+  SettingsFile().change([](KeptSettings& kept) { kept.fps = 30; });
+  EXPECT_EQ(SettingsFile().load().fps, 30);
+  EXPECT_EQ(warnings(), 1) << said_;
+}
+
+TEST_F(KeptSettingsFile, WithoutAPlaceThereIsOneWarning) {
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  ::setenv("XDG_CONFIG_HOME", "", 1);
+  ::unsetenv("HOME");
+  SettingsFile file;
+  ::setenv("HOME", home.c_str(), 1);
+  EXPECT_FALSE(file.load().fps);
+  for (const double fps : {20.0, 30.0}) file.change([&](KeptSettings& kept) { kept.fps = fps; });
+  EXPECT_EQ(warnings(), 1) << said_;
+}
+
+TEST_F(KeptSettingsFile, WhatChangesNothingWritesNothing) {
+  SettingsFile().change([](KeptSettings&) {});
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  load("{");
+  SettingsFile().change([](KeptSettings&) {});
+  EXPECT_EQ(textOf(file_), "{");
 }
 
 TEST_F(KeptSettingsFile, ChangesLeaveWhatAnotherWindowKept) {
   KeptSettings kept;
   kept.fps = 50;
   addRecent(kept, scene("one.glb"));
-  saveSettings(kept);
-  const KeptSettings start = loadSettings();
-  changeSettings([&](KeptSettings& other) {
+  save(kept);
+  const KeptSettings start = SettingsFile().load();
+  SettingsFile().change([&](KeptSettings& other) {
     other.attention = 0.25;
     other.reuse = false;
     addRecent(other, scene("two.glb"));
   });
-  changeSettings([](KeptSettings& now) { now.fps = 30; });
-  const KeptSettings end = loadSettings();
+  SettingsFile().change([](KeptSettings& now) { now.fps = 30; });
+  const KeptSettings end = SettingsFile().load();
   EXPECT_EQ(start.fps, 50);
   EXPECT_EQ(end.fps, 30);
   EXPECT_EQ(end.attention, 0.25);
@@ -200,12 +234,29 @@ TEST_F(KeptSettingsFile, ChangesLeaveWhatAnotherWindowKept) {
   EXPECT_EQ(end.recent[0], scene("two.glb"));
 }
 
-TEST_F(KeptSettingsFile, ABrokenFileIsToldOfOnce) {
-  load("{");
+TEST_F(KeptSettingsFile, ABrokenFileIsToldOfOnceAndKept) {
+  const std::filesystem::path aside = file_.string() + ".broken";
+  SettingsFile file;
+  std::ofstream(file_) << "{";
+  EXPECT_FALSE(file.load().fps);
   EXPECT_EQ(warnings(), 1);
-  changeSettings([](KeptSettings& kept) { kept.fps = 30; });
+  EXPECT_NE(said_.find("settings.json.broken"), std::string::npos) << said_;
+  EXPECT_FALSE(std::filesystem::exists(aside)) << "not before something changes";
+  file.change([](KeptSettings& kept) { kept.fps = 30; });
+  file.change([](KeptSettings& kept) { kept.delta = 0.2; });
   EXPECT_EQ(warnings(), 1);
-  EXPECT_EQ(loadSettings().fps, 30);
+  EXPECT_EQ(textOf(aside), "{");
+  EXPECT_EQ(file.load().fps, 30);
+}
+
+// What cannot be kept must not be replaced.
+TEST_F(KeptSettingsFile, ABrokenFileThatCannotBeMovedStays) {
+  std::filesystem::create_directories(file_.string() + ".broken/something");
+  SettingsFile file;
+  std::ofstream(file_) << "{";
+  for (const double fps : {20.0, 30.0}) file.change([&](KeptSettings& kept) { kept.fps = fps; });
+  EXPECT_EQ(warnings(), 1) << said_;
+  EXPECT_EQ(textOf(file_), "{");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST_F(WindowScenes, ADroppedSceneIsOpenedBesideTheOldOne) {
     EXPECT_GT(pixelsThatDiffer(viewer.picture(), before), before.pixels().size() / 10);
   });
   EXPECT_EQ(status, 0);
-  const app::KeptSettings kept = app::loadSettings();
+  const app::KeptSettings kept = app::SettingsFile().load();
   ASSERT_EQ(kept.recent.size(), 2);
   EXPECT_EQ(kept.recent.front(), other);
   EXPECT_EQ(kept.recent.back(), bundled("cornell.glb"));
@@ -122,9 +122,7 @@ TEST_F(WindowScenes, ASceneThatCannotBeUploadedKeepsTheOldOne) {
 }
 
 TEST_F(WindowScenes, WithoutASceneTheWindowOffersRecentOnes) {
-  app::KeptSettings kept;
-  app::addRecent(kept, bundled("cornell.glb"));
-  app::saveSettings(kept);
+  app::SettingsFile().change([](app::KeptSettings& kept) { app::addRecent(kept, bundled("cornell.glb")); });
   app::WalkOptions options = drivenOptions();
   options.scene.path.clear();
   const int status = DrivenViewer::run(options, [](DrivenViewer& viewer) {

@@ -83,7 +83,7 @@ TEST(WindowSettings, TheNextWindowIsAsTheLastWasLeft) {
     viewer.x().press("F11");
     viewer.until("its old size", [&] { return viewer.state().width == 700 && viewer.state().height == 600; });
   });
-  const KeptSettings kept = loadSettings();
+  const KeptSettings kept = SettingsFile().load();
   ASSERT_EQ(kept.recent.size(), 1u);
   EXPECT_EQ(kept.recent.front(), bundled("cornell.glb").lexically_normal());
 }
