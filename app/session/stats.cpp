@@ -56,6 +56,7 @@ void writeStats(const std::filesystem::path& file, const RunStats& s) {
   json["converged"] = s.converged;
   if (s.firstFrameMs > 0) json["first_frame_ms"] = s.firstFrameMs;
   if (s.firstWalkMs > 0) json["first_walk_ms"] = s.firstWalkMs;
+  if (s.longestWaitMs > 0) json["longest_wait_ms"] = s.longestWaitMs;
   json["seed"] = s.seed;
   json["threads"] = s.threads;
   json["context"] = s.context;

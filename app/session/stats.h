@@ -31,6 +31,8 @@ struct RunStats {
   /// Window, from the program's start, 0 = never: until a scene's base layer was shown, and until the first
   /// frame of the walk in it was, which follows the camera and is corrected.
   double firstFrameMs = 0, firstWalkMs = 0;
+  /// Window: the longest time for which it looked at no events while it opened scenes, 0 = it opened none.
+  double longestWaitMs = 0;
   std::uint32_t seed = 1;
   int threads = 0;
   std::string context, renderer;

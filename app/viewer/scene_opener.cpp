@@ -6,6 +6,21 @@
 
 namespace saccade::app {
 
+namespace {
+
+std::string nameOf(const WalkOptions& visit) {
+  return std::filesystem::path(visit.scene.path).filename().string();
+}
+
+/// An open scene that nobody wants any more.
+void refuse(SceneOpener::Outcome& outcome) {
+  outcome.workspace.reset();
+  outcome.cancelled = true;
+  outcome.error = nameOf(outcome.visit) + ": stopped on request";
+}
+
+}  // namespace
+
 SceneOpener::SceneOpener(Open open)
     : open_(std::move(open)), thread_([this](const std::stop_token& end) { work(end); }) {}
 
@@ -24,6 +39,10 @@ void SceneOpener::open(const WalkOptions& visit) {
 void SceneOpener::cancel() {
   const std::lock_guard lock(mutex_);
   next_.reset();
+  if (outcome_ && outcome_->workspace) {
+    refuse(*outcome_);
+    drawable_.reset();
+  }
   if (!current_) return;
   current_->cancelled = true;
   cancel_.request_stop();
@@ -32,12 +51,19 @@ void SceneOpener::cancel() {
 std::optional<SceneOpener::State> SceneOpener::state() const {
   const std::lock_guard lock(mutex_);
   if (next_) return State{next_->scene.path, {"waiting for the scene before"}, false};
+  if (outcome_ && outcome_->workspace)
+    return State{outcome_->visit.scene.path, {"handing it to OpenGL"}, false};
   return current_;
 }
 
 std::optional<SceneOpener::Reading> SceneOpener::drawable() const {
   const std::lock_guard lock(mutex_);
   return next_ || (current_ && current_->cancelled) ? std::nullopt : drawable_;
+}
+
+bool SceneOpener::hasOutcome() const {
+  const std::lock_guard lock(mutex_);
+  return outcome_.has_value();
 }
 
 std::optional<SceneOpener::Outcome> SceneOpener::take() {
@@ -74,6 +100,7 @@ void SceneOpener::work(const std::stop_token& end) {
     Outcome outcome = openNow(visit, stop);
     const std::lock_guard lock(mutex_);
     current_.reset();
+    if (!outcome.workspace) drawable_.reset();
     if (!next_) outcome_ = std::move(outcome);
     news_.notify_all();
   }
@@ -87,23 +114,23 @@ SceneOpener::Outcome SceneOpener::openNow(const WalkOptions& visit, const std::s
       const std::lock_guard lock(mutex_);
       current_->step = step;
     };
-    outcome.workspace = open_(visit, stop, report, [&](std::shared_ptr<const Workspace> workspace) {
-      const std::lock_guard lock(mutex_);
-      drawable_ = Reading{visit, std::move(workspace)};
-      news_.notify_all();
-    });
+    outcome.workspace = open_(
+        visit, stop, report, [&](std::shared_ptr<const Workspace> workspace, render::DrawList drawList) {
+          const std::lock_guard lock(mutex_);
+          drawable_ = Reading{visit, std::move(workspace),
+                              std::make_shared<const render::DrawList>(std::move(drawList))};
+          news_.notify_all();
+        });
   } catch (const std::exception& e) {
     outcome.error = e.what();
   }
   outcome.cancelled = stop.stop_requested();
   // Done in spite of the wish: the person has turned to something else.
   if (outcome.cancelled && outcome.workspace) {
-    outcome.workspace.reset();
-    outcome.error = "stopped on request";
+    refuse(outcome);
+  } else if (!outcome.error.empty() && outcome.error.find(nameOf(visit)) == std::string::npos) {
+    outcome.error = nameOf(visit) + ": " + outcome.error;
   }
-  const std::string name = std::filesystem::path(visit.scene.path).filename().string();
-  if (!outcome.error.empty() && outcome.error.find(name) == std::string::npos)
-    outcome.error = name + ": " + outcome.error;
   return outcome;
 }
 

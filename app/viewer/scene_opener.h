@@ -14,14 +14,15 @@
 
 #include "app/cli/walk_options.h"
 #include "app/session/workspace.h"
+#include "render/base/draw_list.h"
 
 namespace saccade::app {
 
 /// One scene at a time; the last one asked for counts. The owner's thread only, unless a line says otherwise.
 class SceneOpener {
  public:
-  /// To be called with what readWorkspace returned.
-  using Drawable = std::function<void(std::shared_ptr<const Workspace>)>;
+  /// To be called with what readWorkspace returned, and what of it is to be drawn.
+  using Drawable = std::function<void(std::shared_ptr<const Workspace>, render::DrawList)>;
   /// Opens a scene: openWorkspace with what belongs to it. Called on the opener's thread.
   using Open =
       std::function<std::shared_ptr<const Workspace>(const WalkOptions& visit, const std::stop_token& stop,
@@ -32,6 +33,12 @@ class SceneOpener {
     std::string scene;  ///< path
     OpeningStep step;
     bool cancelled = false;  ///< it ends as soon as it can
+  };
+  /// A scene whose base layer can be drawn: scene and maps are there.
+  struct Reading {
+    WalkOptions visit;
+    std::shared_ptr<const Workspace> workspace;
+    std::shared_ptr<const render::DrawList> drawList;
   };
   /// What became of a scene: one of the two.
   struct Outcome {
@@ -49,14 +56,12 @@ class SceneOpener {
   void open(const WalkOptions& visit);
   /// What is under way ends with an outcome that says so; a bake keeps what it has. Nothing waits.
   void cancel();
-  /// Nothing: idle. Any thread.
+  /// Of what is under way, or open and not yet taken. Nothing: idle. Any thread.
   std::optional<State> state() const;
-  /// What is under way, or not yet taken, has scene and maps: the base layer can be drawn. Any thread.
-  struct Reading {
-    WalkOptions visit;
-    std::shared_ptr<const Workspace> workspace;
-  };
+  /// What is under way, or not yet taken, where it has come so far. Any thread.
   std::optional<Reading> drawable() const;
+  /// There is something to take; a scene that is open is drawable() until then.
+  bool hasOutcome() const;
   /// Each outcome once, in the order of the calls of open; one that was overtaken by a later call has none.
   std::optional<Outcome> take();
   /// Waits so long at most, less where something becomes drawable or has an outcome meanwhile.

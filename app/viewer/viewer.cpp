@@ -38,11 +38,13 @@ using render::Key;
 /// Before main, after the libraries were loaded.
 const Clock::time_point kProgramStart = Clock::now();
 
-constexpr std::chrono::milliseconds kIdlePause{20};  ///< of frames that show no scene
+constexpr std::chrono::milliseconds kIdlePause{20};   ///< of frames that show no scene
+constexpr std::chrono::milliseconds kUploadTime{10};  ///< of a frame, for the scene that is being opened
 
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double secondsBetween(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
 }
+double secondsSince(Clock::time_point start) { return secondsBetween(start, Clock::now()); }
 
 int panelPixels(double uiScale) { return static_cast<int>(std::lround(kPanelWidth * uiScale)); }
 
@@ -80,6 +82,7 @@ class Viewer {
       RunStats stats = scene_->stats();
       stats.firstFrameMs = firstFrameMs_;
       stats.firstWalkMs = firstWalkMs_;
+      stats.longestWaitMs = longestWaitMs_;
       writeStats(options_.run.statsFile, stats);
     }
     endScene();
@@ -102,7 +105,7 @@ class Viewer {
                                                     const OpeningReport& report,
                                                     const SceneOpener::Drawable& drawable) {
     const std::shared_ptr<Workspace> workspace = readWorkspace(visit.scene, bakeOf(visit), stop, report);
-    drawable(workspace);
+    drawable(workspace, render::makeDrawList(workspace->scene));
     finishWorkspace(*workspace, stop, report);
     return workspace;
   }
@@ -110,14 +113,12 @@ class Viewer {
   void frame() {
     const Clock::time_point start = Clock::now();
     if (std::exchange(fullscreenChanges_, false)) window_.setFullscreen(!window_.fullscreen());
+    noteWait(start);
     const std::vector<render::Event> events = window_.pollEvents();
     // Before the events: whether the panel wants the mouse then depends on where it is now.
     imgui_.newFrame(window_.width(), window_.height());
     for (const render::Event& event : events) std::visit([this](const auto& e) { handle(e); }, event);
-    if (auto outcome = opener_.take())
-      show(*outcome);
-    else
-      uploadAhead();
+    goOnOpening();
     if (scene_) scene_->moveCamera(!ImGui::GetIO().WantCaptureKeyboard);
     const ImageSize size{window_.width() - panelWidth(), window_.height()};
     if (size.width < 1 || size.height < 1) {  // minimised, or narrower than the panel
@@ -130,8 +131,7 @@ class Viewer {
   }
 
   void drawFrame(ImageSize size, Clock::time_point start) {
-    if (!scene_ && !newPicture_) opener_.awaitNews(kIdlePause);
-    newPicture_ = false;
+    if (!scene_ && !uploading_) opener_.awaitNews(kIdlePause);
     const std::chrono::duration<double> budget(1 / panel_.fps - presentSeconds_);
     if (scene_) scene_->step(panel_, size, start + std::chrono::duration_cast<Clock::duration>(budget));
     const Clock::time_point stepped = Clock::now();
@@ -164,20 +164,25 @@ class Viewer {
     return ahead_ ? ahead_->picture(size, panel_.exposureEv) : kNothing;
   }
 
-  /// Uploads what is being opened while its world is built. What fails is said once the scene is there.
-  void uploadAhead() {
+  /// Uploads a little of what is being opened, while its world is built; shows it once both are done.
+  void goOnOpening() {
+    const bool opened = opener_.hasOutcome();  // asked first: then what is drawable now is that
     const std::optional<SceneOpener::Reading> reading = opener_.drawable();
-    if (!reading) return ahead_.reset();
-    if (reading->workspace == triedAhead_.lock()) return;
-    triedAhead_ = reading->workspace;
-    ahead_.reset();
-    try {
-      ahead_.emplace(reading->visit, reading->workspace, window_.context());
-      chooseCamera(reading->workspace->scene, reading->visit.camera);
-      newPicture_ = true;
-    } catch (const core::Error&) {
-      ahead_.reset();
-    }
+    if (!reading) ahead_.reset();
+    if (reading && (!ahead_ || ahead_->workspace() != reading->workspace))
+      ahead_.emplace(*reading, window_.context());
+    uploading_ = ahead_ && !ahead_->done();
+    if (uploading_ && !ahead_->upload(Clock::now() + kUploadTime)) return;
+    if (!opened) return;
+    if (auto outcome = opener_.take()) show(*outcome);
+  }
+
+  /// How long the window answers nobody at most while it opens a scene: from one look at the events to the
+  /// next.
+  void noteWait(Clock::time_point now) {
+    if (wasOpening_) longestWaitMs_ = std::max(longestWaitMs_, 1000 * secondsBetween(lastEvents_, now));
+    wasOpening_ = opener_.state().has_value();
+    lastEvents_ = now;
   }
 
   /// Counts from the first scene on, or from there being none to wait for.
@@ -189,10 +194,13 @@ class Viewer {
   void show(SceneOpener::Outcome& outcome) {
     if (!outcome.workspace) return tell(outcome);
     const std::string scene = outcome.visit.scene.path;
+    outcome.error = ahead_->error();
+    std::unique_ptr<render::BaseRenderer> renderer = ahead_->takeRenderer();
+    ahead_.reset();
+    if (!renderer) return tell(outcome);
+    endScene();  // not before the new one is known to fit the graphics memory
+    status_ = 0;
     try {
-      std::unique_ptr<render::BaseRenderer> renderer = uploaded(outcome);
-      endScene();  // not before the new one is known to fit the graphics memory
-      status_ = 0;
       scene_.emplace(outcome.visit, std::move(outcome.workspace), std::move(renderer), window_);
     } catch (const core::Error& e) {
       outcome.error = e.what();
@@ -203,14 +211,6 @@ class Viewer {
       addRecent(kept, scene);
       kept_.recent = kept.recent;
     });
-  }
-
-  std::unique_ptr<render::BaseRenderer> uploaded(const SceneOpener::Outcome& outcome) {
-    if (!ahead_ || ahead_->workspace() != outcome.workspace)
-      ahead_.emplace(outcome.visit, outcome.workspace, window_.context());
-    std::unique_ptr<render::BaseRenderer> renderer = ahead_->takeRenderer();
-    ahead_.reset();
-    return renderer;
   }
 
   /// Where there is no scene, the walk that was asked for has failed.
@@ -264,7 +264,9 @@ class Viewer {
     }
   }
 
-  int panelWidth() const { return (scene_ || ahead_) && panel_.visible ? panelPixels(uiScale_) : 0; }
+  int panelWidth() const {
+    return (scene_ || (ahead_ && ahead_->ready())) && panel_.visible ? panelPixels(uiScale_) : 0;
+  }
 
   ViewerState state() const {
     ViewerState state{panel_, items_};
@@ -363,13 +365,14 @@ class Viewer {
   render::ImguiLayer imgui_;
   WindowLook startLook_;
   SceneOpener opener_;
-  std::optional<BaseView> ahead_;              ///< of the scene that is being opened, once it can be drawn
-  bool newPicture_ = false;                    ///< to be shown without a pause
-  std::weak_ptr<const Workspace> triedAhead_;  ///< whether that could be uploaded or not
-  std::optional<SceneView> scene_;             ///< nothing: none is open
-  std::string notice_;                         ///< waits to be read; empty: nothing
-  int status_ = 0;                             ///< of the program
-  double firstFrameMs_ = 0, firstWalkMs_ = 0;
+  std::optional<BaseView> ahead_;   ///< of the scene that is being opened, once scene and maps are there
+  bool uploading_ = false;          ///< in this frame: the next one comes without a pause
+  std::optional<SceneView> scene_;  ///< nothing: none is open
+  std::string notice_;              ///< waits to be read; empty: nothing
+  int status_ = 0;                  ///< of the program
+  double firstFrameMs_ = 0, firstWalkMs_ = 0, longestWaitMs_ = 0;
+  Clock::time_point lastEvents_;  ///< were looked at
+  bool wasOpening_ = false;       ///< then
   UiItems items_;
   StageTimes times_;
   ClickDetector leftButton_;

@@ -29,7 +29,7 @@ Times openInWindow(const Subject& s, const std::filesystem::path& folder, const 
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(stats));
   std::filesystem::remove(stats);
   Times out;
-  for (const char* name : {"first_frame", "first_walk"})
+  for (const char* name : {"first_frame", "first_walk", "longest_wait"})
     out[name] = json.at(std::string(name) + "_ms").get<double>() / 1000;
   return out;
 }

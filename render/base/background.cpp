@@ -47,10 +47,10 @@ void main() {
 }
 )";
 
-/// Averages blocks of texels until both sides fit.
+/// Averages blocks of texels until both sides fit; empty where they do.
 core::ImageRgb fitted(const core::ImageRgb& image, int maxSide) {
   const int factor = (std::max(image.width(), image.height()) + maxSide - 1) / maxSide;
-  if (factor <= 1) return image;
+  if (factor <= 1) return {};
   core::ImageRgb out(std::max(1, image.width() / factor), std::max(1, image.height() / factor));
   const auto begin = [](int i, int from, int to) {
     return static_cast<int>(static_cast<std::int64_t>(i) * from / to);
@@ -69,34 +69,46 @@ core::ImageRgb fitted(const core::ImageRgb& image, int maxSide) {
   return out;
 }
 
-GlTexture upload(const Gl& gl, const core::ImageRgb& image) {
-  GlTexture texture(gl);
-  gl.BindTexture(GL_TEXTURE_2D, texture.name());
-  gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  static_assert(sizeof(core::Vec3) == 3 * sizeof(float));
-  gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, image.width(), image.height(), 0, GL_RGB, GL_FLOAT,
-                image.pixels().data());
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  return texture;
-}
-
 }  // namespace
 
-Background::Background(const Gl& gl, const core::Environment& environment, int maxSide)
-    : gl_(gl),
-      texture_(upload(gl, fitted(environment.radiance, maxSide))),
-      program_(gl, buildProgram(gl, "environment", kVertex, kFragment)),
-      noAttributes_(gl) {
-  corner_ = gl.GetUniformLocation(program_.name(), "corner");
-  turns_ = gl.GetUniformLocation(program_.name(), "turns");
-  const float turns[4] = {environment.rotation / (2 * core::kPi), 0, 0, 0};
-  gl.UseProgram(program_.name());
-  gl.Uniform4fv(turns_, 1, turns);
-  gl.Uniform1i(gl.GetUniformLocation(program_.name(), "environment"), 0);
-  checkGl(gl, "uploading the environment");
+Background::Background(const Gl& gl, const core::Environment& environment, int maxSide, Portions& portions)
+    : gl_(gl), smaller_(fitted(environment.radiance, maxSide)) {
+  const core::ImageRgb& image = smaller_.empty() ? environment.radiance : smaller_;
+  portions.add([this, &image] { makeTexture(image.width(), image.height()); });
+  rowsInPortions(image.width(), image.height(), [&](int row, int rows) {
+    portions.add([this, &image, row, rows] {
+      static_assert(sizeof(core::Vec3) == 3 * sizeof(float));
+      gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
+      gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+      gl_.TexSubImage2D(GL_TEXTURE_2D, 0, 0, row, image.width(), rows, GL_RGB, GL_FLOAT, &image.at(0, row));
+    });
+  });
+  portions.add([this, &environment] {
+    smaller_ = core::ImageRgb();
+    makeProgram(environment.rotation);
+    checkGl(gl_, "uploading the environment");
+  });
+}
+
+void Background::makeTexture(int width, int height) {
+  texture_ = GlTexture(gl_);
+  gl_.BindTexture(GL_TEXTURE_2D, texture_.name());
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, width, height, 0, GL_RGB, GL_FLOAT, nullptr);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+}
+
+void Background::makeProgram(float rotation) {
+  program_ = GlProgram(gl_, buildProgram(gl_, "environment", kVertex, kFragment));
+  noAttributes_ = GlVertexArray(gl_);
+  corner_ = gl_.GetUniformLocation(program_.name(), "corner");
+  turns_ = gl_.GetUniformLocation(program_.name(), "turns");
+  const float turns[4] = {rotation / (2 * core::kPi), 0, 0, 0};
+  gl_.UseProgram(program_.name());
+  gl_.Uniform4fv(turns_, 1, turns);
+  gl_.Uniform1i(gl_.GetUniformLocation(program_.name(), "environment"), 0);
 }
 
 void Background::draw(const core::View& view) const {

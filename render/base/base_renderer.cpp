@@ -5,6 +5,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "render/base/features.h"
 #include "render/base/frustum.h"
 #include "render/base/geometry.h"
+#include "render/base/portions.h"
 #include "render/base/snapshot_pool.h"
 #include "render/base/target.h"
 #include "render/base/textures.h"
@@ -70,20 +72,21 @@ struct Visible {
 }  // namespace
 
 struct BaseRenderer::State {
-  State(GlContext& glContext, const core::Scene& drawnScene)
+  State(GlContext& glContext, const core::Scene& drawnScene, DrawList drawList)
       : context(glContext),
         gl(glContext.gl()),
         scene(drawnScene),
-        geometry(gl, drawnScene),
+        list(std::move(drawList)),
         target(gl, glContext.maxSize()),
         idCount(drawnScene.idCount()) {}
 
   GlContext& context;
   const Gl& gl;
   const core::Scene& scene;
+  const DrawList list;
+  Portions uploads;  ///< left to do
   Geometry geometry;
-  std::vector<SurfaceConstants> constants;  ///< by object
-  std::vector<GlTexture> textures;          ///< by the scene's index; empty ones are not drawn
+  std::vector<GlTexture> textures;  ///< by the scene's index; empty ones are not drawn
   MapTextures maps;
   std::map<Features, Program> programs;
   std::optional<Background> background;  ///< where the scene has an environment
@@ -103,10 +106,14 @@ struct BaseRenderer::State {
   bool inWorldSpace = false;  ///< the program's uniforms are those of meshes in world space
   bool mirrored = false;
 
-  void uploadTextures();
+  void addUploads();
+  void addTextures();
+  void addMaps(const core::IlluminationMaps& shownMaps);
+  void addFirstDraws();
   Features shown(Features features) const;
   const Program& program(Features features);
   void draw(const core::View& view, std::span<const char> hidden);
+  void drawItem(const DrawItem& item, const core::View& view, bool cull, std::uint32_t indexCount);
   void beginDraw(const core::View& view);
   void useState(const DrawItem& item, const core::View& view);
   void placeMesh(const DrawItem& item, const core::View& view);
@@ -115,18 +122,56 @@ struct BaseRenderer::State {
   void sortVisible(const core::View& view, std::span<const char> hidden);
 };
 
-void BaseRenderer::State::uploadTextures() {
+/// All but the maps.
+void BaseRenderer::State::addUploads() {
+  geometry.addUpload(gl, scene, list.parts, uploads);
+  addTextures();
+  if (scene.environment) background.emplace(gl, *scene.environment, context.maxSize(), uploads);
+}
+
+void BaseRenderer::State::addTextures() {
   textures.resize(scene.textures.size());
-  for (const DrawItem& item : geometry.items()) {
+  std::vector<char> added(scene.textures.size(), 0);
+  for (const DrawItem& item : list.items) {
     const core::Material& m = scene.materials[scene.objects[item.object].material];
     for (const TextureUse& use : kTextureUses) {
       if (!(item.features & use.texture)) continue;
       const auto index = static_cast<std::size_t>((m.*use.slot).texture);
-      if (textures[index].name() == 0)
-        textures[index] = uploadTexture(gl, scene.textures[index], context.maxSize());
+      if (!std::exchange(added[index], 1))
+        addUpload(gl, scene.textures[index], context.maxSize(), textures[index], uploads);
     }
   }
-  checkGl(gl, "uploading the textures");
+  uploads.add([this] { checkGl(gl, "uploading the textures"); });
+}
+
+void BaseRenderer::State::addMaps(const core::IlluminationMaps& shownMaps) {
+  addUpload(gl, shownMaps, context.maxSize(), maps, uploads);
+}
+
+/// One triangle with every program and each set of textures that it reads, into a small target: GL compiles
+/// what it needs at a first draw, which a software rasteriser takes tens of milliseconds for.
+void BaseRenderer::State::addFirstDraws() {
+  const auto view = std::make_shared<const core::View>(core::Camera{}, 8, 8, scene.bounds);
+  std::set<std::vector<int>> drawn;
+  for (const DrawItem& item : list.items) {
+    const core::Material& m = scene.materials[scene.objects[item.object].material];
+    std::vector<int> kind{static_cast<int>(item.features)};
+    for (const TextureUse& use : kTextureUses)
+      if (item.features & use.texture) kind.push_back((m.*use.slot).texture);
+    if (!drawn.insert(std::move(kind)).second) continue;
+    uploads.add([this, &item] { program(shown(item.features)); });
+    uploads.add([this, &item, view] {
+      beginDraw(*view);
+      drawItem(item, *view, false, 3);
+      gl.BindVertexArray(0);
+      gl.Finish();
+    });
+  }
+  uploads.add([this, view] {
+    draw(*view, std::vector<char>(scene.objects.size(), 1));  // the background alone
+    gl.Finish();
+    checkGl(gl, "drawing for the first time");
+  });
 }
 
 /// What is drawn with the maps at hand.
@@ -206,7 +251,7 @@ void BaseRenderer::State::useState(const DrawItem& item, const core::View& view)
     if (features & use.transform)
       gl.UniformMatrix3x2fv(wanted.uvMatrix[i], 1, GL_FALSE, &core::uvMatrix(m.*use.slot)[0][0]);
   }
-  SurfaceConstants c = constants[item.object];
+  SurfaceConstants c = list.constants[item.object];
   // Without maps the irradiance is pi, which the division by pi takes away.
   if (features & kLightmap) c.diffuse /= core::kPi;
   gl.Uniform4fv(wanted.surface, 3, &c.diffuse.x);
@@ -233,7 +278,7 @@ void BaseRenderer::State::sortVisible(const core::View& view, std::span<const ch
   findVisible(scene, view, visible);
   order.clear();
   const core::Vec3 eye = view.camera().eye;
-  for (const DrawItem& item : geometry.items()) {
+  for (const DrawItem& item : list.items) {
     if (!visible[item.object] || (!hidden.empty() && hidden[item.object])) continue;
     const core::Bounds& bounds = scene.objects[item.object].bounds;
     const core::Vec3 nearest = glm::clamp(eye, bounds.lo, bounds.hi) - eye;
@@ -244,6 +289,14 @@ void BaseRenderer::State::sortVisible(const core::View& view, std::span<const ch
                    [](const Visible& a, const Visible& b) { return a.distanceSquared < b.distanceSquared; });
 }
 
+void BaseRenderer::State::drawItem(const DrawItem& item, const core::View& view, bool cull,
+                                   std::uint32_t indexCount) {
+  useState(item, view);
+  cullBackFaces(cull);
+  gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(indexCount), GL_UNSIGNED_INT,
+                  reinterpret_cast<const void*>(std::size_t{item.firstIndex} * sizeof(std::uint32_t)));
+}
+
 void BaseRenderer::State::draw(const core::View& view, std::span<const char> hidden) {
   beginDraw(view);
   sortVisible(view, hidden);
@@ -251,36 +304,35 @@ void BaseRenderer::State::draw(const core::View& view, std::span<const char> hid
   const float nearCorner = view.zNear() * glm::length(view.direction({0, 0}));
   for (const Visible& v : order) {
     const DrawItem& item = *v.item;
-    useState(item, view);
     const bool outside = v.distanceSquared > nearCorner * nearCorner && v.distanceSquared < core::kInfinity;
-    cullBackFaces(item.oneSided || (item.solid && outside));
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(item.indexCount), GL_UNSIGNED_INT,
-                    reinterpret_cast<const void*>(std::size_t{item.firstIndex} * sizeof(std::uint32_t)));
+    drawItem(item, view, item.oneSided || (item.solid && outside), item.indexCount);
     stats.triangles += item.indexCount / 3;
   }
   stats.objectsDrawn = order.size();
-  stats.objectsCulled = geometry.items().size() - order.size();
+  stats.objectsCulled = list.items.size() - order.size();
   if (background) background->draw(view);
   gl.BindVertexArray(0);
 }
 
 BaseRenderer::BaseRenderer(GlContext& context, const core::Scene& scene) {
   context.makeCurrent();
-  state_ = std::make_unique<State>(context, scene);
-  for (const core::Object& object : scene.objects) state_->constants.push_back(constantsOf(scene, object));
-  state_->uploadTextures();
-  if (scene.environment) state_->background.emplace(state_->gl, *scene.environment, context.maxSize());
+  state_ = std::make_unique<State>(context, scene, makeDrawList(scene));
+  state_->addUploads();
+  state_->uploads.finish();
 }
+
+BaseRenderer::BaseRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 BaseRenderer::~BaseRenderer() { state_->context.makeCurrent(); }
 
 void BaseRenderer::setMaps(const core::IlluminationMaps* maps) {
   state_->context.makeCurrent();
   state_->maps = MapTextures();
+  state_->uploads = {};  // of maps that were refused half-way
   ++state_->mapsNumber;
   if (!maps) return;
-  state_->maps = uploadMaps(state_->gl, *maps, state_->context.maxSize());
-  checkGl(state_->gl, "uploading the illumination maps");
+  state_->addMaps(*maps);
+  state_->uploads.finish();
 }
 
 std::shared_ptr<core::FrameSnapshot> BaseRenderer::render(const core::View& view, std::uint64_t epoch,
@@ -316,5 +368,27 @@ core::FramePtr BaseRenderer::renderWithout(const core::View& view, std::span<con
 std::uint64_t BaseRenderer::mapsNumber() const { return state_->mapsNumber; }
 
 const DrawStats& BaseRenderer::lastDraw() const { return state_->stats; }
+
+BaseUpload::BaseUpload(GlContext& context, const core::Scene& scene, DrawList list,
+                       const core::IlluminationMaps* maps) {
+  context.makeCurrent();
+  state_ = std::make_unique<BaseRenderer::State>(context, scene, std::move(list));
+  state_->addUploads();
+  if (maps) state_->addMaps(*maps);
+  state_->addFirstDraws();
+}
+
+BaseUpload::~BaseUpload() {
+  if (state_) state_->context.makeCurrent();
+}
+
+bool BaseUpload::goOn(std::chrono::steady_clock::time_point until) {
+  state_->context.makeCurrent();
+  return state_->uploads.goOn(until);
+}
+
+std::unique_ptr<BaseRenderer> BaseUpload::take() {
+  return std::unique_ptr<BaseRenderer>(new BaseRenderer(std::move(state_)));
+}
 
 }  // namespace saccade::render

@@ -12,6 +12,7 @@
 // drawn, the scene's environment shows (ID 0, depth 1), or black.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,6 +22,7 @@
 #include "core/corrective/messages.h"
 #include "core/maps.h"
 #include "core/scene/scene.h"
+#include "render/base/draw_list.h"
 #include "render/context/gl_context.h"
 
 namespace saccade::render {
@@ -61,8 +63,31 @@ class BaseRenderer {
   const DrawStats& lastDraw() const;
 
  private:
+  friend class BaseUpload;
   struct State;
+  explicit BaseRenderer(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
+};
+
+/// Makes a BaseRenderer in portions, most of them a few milliseconds long, so that a window can show frames
+/// meanwhile. The longest are a large texture's mipmaps and what a software rasteriser compiles for a
+/// program, which is done here and not in the first frame. GL thread only, the destructor included. Every
+/// function makes the context current.
+class BaseUpload {
+ public:
+  /// `list`: of the scene, charted for the maps (null: none). Scene and context must outlive the renderer,
+  /// the maps this. Throws core::Error, also for what the context cannot take.
+  BaseUpload(GlContext& context, const core::Scene& scene, DrawList list, const core::IlluminationMaps* maps);
+  ~BaseUpload();
+  /// Does one portion, and goes on until the time is up. Returns whether all is there. Throws core::Error:
+  /// nothing comes of it then.
+  bool goOn(std::chrono::steady_clock::time_point until);
+  /// Once all is there: draws what one with the whole constructor and setMaps does. Nothing else may be
+  /// called afterwards.
+  std::unique_ptr<BaseRenderer> take();
+
+ private:
+  std::unique_ptr<BaseRenderer::State> state_;
 };
 
 }  // namespace saccade::render

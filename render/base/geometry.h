@@ -1,38 +1,25 @@
-// The scene's triangles on the GL side, in draw order. GL thread only.
+// The scene's triangles on the GL side. GL thread only.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <vector>
+#include <span>
 
 #include "core/scene/scene.h"
-#include "render/base/features.h"
+#include "render/base/draw_list.h"
+#include "render/base/portions.h"
 #include "render/context/gl_object.h"
 
 namespace saccade::render {
 
-/// An object and its mesh's part of the index buffer.
-struct DrawItem {
-  std::uint32_t object = 0;
-  Features features = 0;         ///< with maps
-  std::uint32_t attributes = 0;  ///< names the vertex layout
-  std::uint32_t firstIndex = 0;
-  std::uint32_t indexCount = 0;
-  bool solid = false;      ///< opaque, and its front faces hide its back faces from outside
-  bool instanced = false;  ///< vertices are in the mesh's space: Object::meshToWorld
-  bool mirrored = false;   ///< and that turns triangles over
-  bool oneSided = false;   ///< single-sided and opaque: its back faces are invisible to the camera
-};
-
-/// All meshes, an instanced one once for each layout that its objects need. Vertices interleaved, one vertex
-/// buffer per layout (the attributes that programs need), and one index buffer sorted like `items`.
+/// Vertices interleaved, one vertex buffer per layout (the attributes that programs need), and one index
+/// buffer.
 class Geometry {
  public:
-  Geometry(const Gl& gl, const core::Scene& scene);
+  /// Adds the upload of `parts` (DrawList) to the portions; all of them, the scene and this object must be
+  /// where they are until those are done.
+  void addUpload(const Gl& gl, const core::Scene& scene, std::span<const MeshPart> parts, Portions& portions);
 
-  /// By layout, features, texture, material and id: neighbours share state. Objects without triangles are
-  /// left out.
-  const std::vector<DrawItem>& items() const { return items_; }
   GLuint vertexArray(std::uint32_t attributes) const { return layouts_.at(attributes).vertexArray.name(); }
 
  private:
@@ -40,10 +27,8 @@ class Geometry {
     GlVertexArray vertexArray;
     GlBuffer vertices;
   };
-  void sortItems(const core::Scene& scene);
-  void upload(const Gl& gl, const core::Scene& scene);
+  void makeBuffers(const Gl& gl, const core::Scene& scene, std::span<const MeshPart> parts);
 
-  std::vector<DrawItem> items_;
   GlBuffer indices_;
   std::map<std::uint32_t, Layout> layouts_;
 };

@@ -3,12 +3,14 @@
 
 #include "core/maps.h"
 #include "core/scene/scene.h"
+#include "render/base/portions.h"
 #include "render/context/gl_object.h"
 
 namespace saccade::render {
 
-/// SRGB8_ALPHA8 or RGBA8 with mipmaps. Throws core::Error when the texture exceeds `maxSide`.
-GlTexture uploadTexture(const Gl& gl, const core::Texture& texture, int maxSide);
+/// SRGB8_ALPHA8 or RGBA8 with mipmaps. Throws core::Error when the texture exceeds `maxSide`. The arguments
+/// must stay where they are until the portions are done.
+void addUpload(const Gl& gl, const core::Texture& texture, int maxSide, GlTexture& into, Portions& portions);
 
 /// Illumination maps: one texture for the atlas and its detail, so that a look-up reads one.
 struct MapTextures {
@@ -17,7 +19,8 @@ struct MapTextures {
   GlTexture blocks;  ///< R32UI, MapBlock::packed by texel of the atlas; none without detail
 };
 
-/// Throws core::Error for maps whose counts disagree and when the texels exceed `maxSide`.
-MapTextures uploadMaps(const Gl& gl, const core::IlluminationMaps& maps, int maxSide);
+/// Likewise; also throws for maps whose counts disagree.
+void addUpload(const Gl& gl, const core::IlluminationMaps& maps, int maxSide, MapTextures& into,
+               Portions& portions);
 
 }  // namespace saccade::render

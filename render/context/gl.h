@@ -20,6 +20,7 @@ namespace saccade::render {
   X(BLENDEQUATION, BlendEquation)                     \
   X(BLENDFUNCSEPARATE, BlendFuncSeparate)             \
   X(BUFFERDATA, BufferData)                           \
+  X(BUFFERSUBDATA, BufferSubData)                     \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus)   \
   X(CLEARBUFFERFV, ClearBufferfv)                     \
   X(CLIPCONTROL, ClipControl)                         \

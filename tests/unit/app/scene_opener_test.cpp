@@ -132,13 +132,35 @@ TEST(SceneOpener, ASceneThatIsReadyAfterItWasCancelledIsNotShown) {
   EXPECT_TRUE(outcome.cancelled);
 }
 
+// What is open but not yet taken waits for OpenGL: it can be cancelled still.
+TEST(SceneOpener, AnOpenSceneThatWasNotTakenCanBeCancelled) {
+  SceneOpener opener([](const WalkOptions&, const std::stop_token&, const OpeningReport&,
+                        const SceneOpener::Drawable& drawable) {
+    auto workspace = std::make_shared<const Workspace>();
+    drawable(workspace, {});
+    return workspace;
+  });
+  opener.open(visitOf("a.glb"));
+  ASSERT_TRUE(eventually([&] { return opener.hasOutcome(); }));
+  ASSERT_TRUE(opener.state());
+  EXPECT_EQ(opener.state()->scene, "a.glb");
+  EXPECT_TRUE(opener.drawable());
+  opener.cancel();
+  EXPECT_FALSE(opener.state());
+  EXPECT_FALSE(opener.drawable());
+  const SceneOpener::Outcome outcome = outcomeOf(opener);
+  EXPECT_FALSE(outcome.workspace);
+  EXPECT_TRUE(outcome.cancelled);
+  EXPECT_EQ(outcome.error, "a.glb: stopped on request");
+}
+
 // The window draws the base layer while the world is built, and goes on with what it uploaded.
 TEST(SceneOpener, WhatCanBeDrawnIsWhatWillBeOpened) {
   std::atomic<bool> worldIsBuilt{false};
   SceneOpener opener([&](const WalkOptions&, const std::stop_token& stop, const OpeningReport&,
                          const SceneOpener::Drawable& drawable) {
     auto workspace = std::make_shared<const Workspace>();
-    drawable(workspace);
+    drawable(workspace, {});
     while (!worldIsBuilt && !stop.stop_requested()) std::this_thread::sleep_for(milliseconds(1));
     return workspace;
   });
@@ -149,7 +171,7 @@ TEST(SceneOpener, WhatCanBeDrawnIsWhatWillBeOpened) {
   EXPECT_TRUE(opener.state()) << "it is not open yet";
   const std::shared_ptr<const Workspace> drawn = opener.drawable()->workspace;
   worldIsBuilt = true;
-  ASSERT_TRUE(eventually([&] { return !opener.state(); }));
+  ASSERT_TRUE(eventually([&] { return opener.hasOutcome(); }));
   EXPECT_TRUE(opener.drawable()) << "until it is taken";
   EXPECT_EQ(outcomeOf(opener).workspace, drawn);
   EXPECT_FALSE(opener.drawable());
