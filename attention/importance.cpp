@@ -92,7 +92,11 @@ Importance importanceOf(const FrameSnapshot& frame, const core::ImageGray& salie
     if (extent.pixels == 0) continue;
     switch (options.order) {
       case Order::attention:
+      case Order::importance:
         out.priority[id] = attentionPriority(out.saliency[id], out.task[id], options.attention);
+        break;
+      case Order::gain:
+        out.priority[id] = 1;
         break;
       case Order::task:
         out.priority[id] = out.task[id];

@@ -13,11 +13,13 @@ namespace saccade::attention {
 
 /// --order. All but `attention` are baselines to measure it against.
 enum class Order {
-  attention,  ///< (1 - a) saliency + a task
-  task,       ///< task importance alone
-  random,     ///< hash of id and seed
-  scanline,   ///< the higher the top of the object's box, the earlier; then the further left
-  largest,    ///< pixels on the mask
+  attention,   ///< importance, (1 - a) saliency + a task, times what samples are worth there (usesGains)
+  importance,  ///< the paper's: importance alone
+  gain,        ///< what samples are worth alone
+  task,        ///< task importance alone
+  random,      ///< hash of id and seed
+  scanline,    ///< the higher the top of the object's box, the earlier; then the further left
+  largest,     ///< pixels on the mask
 };
 
 struct AttentionOptions {
@@ -53,6 +55,9 @@ std::vector<float> taskImportance(const core::FrameSnapshot& frame);
 Importance importanceOf(const core::FrameSnapshot& frame, const core::ImageGray& saliency,
                         const AttentionOptions& options, std::vector<float> attended = {});
 
-inline bool needsSaliency(Order order) { return order == Order::attention; }
+inline bool needsSaliency(Order order) { return order == Order::attention || order == Order::importance; }
+/// Whether the queue multiplies the priority by core::SampleGains: those of the samples that have arrived, of
+/// which the analyzer knows nothing.
+inline bool usesGains(Order order) { return order == Order::attention || order == Order::gain; }
 
 }  // namespace saccade::attention

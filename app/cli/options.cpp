@@ -153,19 +153,21 @@ void addSaliencyOptions(CLI::App& command, attention::SaliencyOptions& o) {
 void addCorrectiveOptions(CLI::App& command, CorrectiveOptions& o) {
   const std::string group = "Corrections";
   using attention::Order;
-  static const std::map<std::string, Order> kOrders{{"attention", Order::attention},
-                                                    {"task", Order::task},
-                                                    {"random", Order::random},
-                                                    {"scanline", Order::scanline},
-                                                    {"largest", Order::largest}};
+  static const std::map<std::string, Order> kOrders{
+      {"attention", Order::attention}, {"importance", Order::importance}, {"gain", Order::gain},
+      {"task", Order::task},           {"random", Order::random},         {"scanline", Order::scanline},
+      {"largest", Order::largest}};
   command
       .add_option("--attention", o.attention.attention, "0 = saliency decides, 1 = task importance decides")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str()
       ->group(group);
   command
-      .add_option("--order", o.attention.order,
-                  "Order of the corrections: attention, task, random, scanline, largest")
+      .add_option(
+          "--order", o.attention.order,
+          "What is corrected first: attention (importance times what samples have changed there so far), "
+          "importance (saliency and task alone, the paper's), gain (what samples changed alone), task, "
+          "random, scanline, largest")
       ->transform(CLI::CheckedTransformer(kOrders))
       ->option_text("NAME [attention]")
       ->group(group);

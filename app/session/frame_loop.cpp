@@ -1,6 +1,7 @@
 #include "app/session/frame_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace saccade::app {
@@ -83,7 +84,10 @@ void FrameLoop::beginFrame(const core::Camera& camera, ImageSize size) {
   dropPending();
   picture_.begin(camera, size);
   if (!options_.asynchronousAnalysis) analyseNow();
-  regions_.beginFrame(picture_.toTrace());
+  gains_.beginFrame();
+  const bool gained = attention::usesGains(options_.corrective.attention.order);
+  regions_.beginFrame(picture_.toTrace(),
+                      gained ? gains_.byId(frame().extents.size()) : std::vector<float>{});
 }
 
 void FrameLoop::analyseNow() {
@@ -180,10 +184,24 @@ void FrameLoop::dropPending() {
 void FrameLoop::take(core::SampleBatch&& batch) {
   if (batch.epoch == frame().epoch) nextSequence_ = std::max(nextSequence_, batch.sequence + 1);
   if (onBatch) onBatch(batch);
+  noteGains(batch);
   picture_.take(batch);
   if (!sink_) return;
   const StageTimer timer(stats_, "record");
   sink_->batch(std::move(batch));
+}
+
+/// Before the batch is splatted. What the display shows where nothing is splatted yet is the base: what
+/// approximates corrections there would hide that samples are wanted.
+void FrameLoop::noteGains(const core::SampleBatch& batch) {
+  if (batch.epoch != frame().epoch || !attention::usesGains(options_.corrective.attention.order)) return;
+  const float exposure = std::exp2(picture_.settings().exposureEv);
+  for (const core::Sample& s : batch.samples) {
+    const core::Vec3 base(frame().baseAndId[frame().index(s.x, s.y)]);
+    const render::CorrectionLayer::Splat* shown = layer().shownAt(s.x, s.y);
+    const core::Vec3 before = shown ? base + shown->correction : base;
+    gains_.add(s.id, core::displayedChange(exposure * before, exposure * (base + s.correction)));
+  }
 }
 
 // Step 8. The analyzer keeps the picture, so the next composite goes into a new one.

@@ -19,6 +19,7 @@
 #include "attention/analyzer.h"
 #include "core/corrective/messages.h"
 #include "core/corrective/queues.h"
+#include "core/corrective/sample_gains.h"
 #include "core/image.h"
 #include "raytrace/corrective_tracer.h"
 #include "raytrace/tracer_pool.h"
@@ -139,6 +140,7 @@ class FrameLoop {
   void correctAll(const std::stop_token& stop);
   std::uint64_t takeInOrder(std::uint64_t atMost);
   void takePending();
+  void noteGains(const core::SampleBatch& batch);
   void dropPending();
   void take(core::SampleBatch&& batch);
   void feedAnalyzer();
@@ -149,6 +151,7 @@ class FrameLoop {
   SessionSink* sink_ = nullptr;
 
   core::RegionQueue regions_;
+  core::SampleGains gains_;
   core::SampleQueue samples_;
   core::SnapshotMailbox mailbox_;
   raytrace::CorrectiveTracer tracer_;

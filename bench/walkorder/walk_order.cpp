@@ -27,16 +27,18 @@ struct Variant {
 
 // The usual one first.
 constexpr Variant kVariants[] = {{kUsual, Order::attention},
+                                 {"importance", Order::importance},
+                                 {"gain", Order::gain},
                                  {"saliency", Order::attention, 0},
                                  {"task", Order::task},
                                  {"random", Order::random},
                                  {"scanline", Order::scanline},
                                  {"largest", Order::largest},
-                                 {"attention-10-percent", Order::attention, 0.5f, kTenPercent},
+                                 {"importance-10-percent", Order::importance, 0.5f, kTenPercent},
                                  {"random-10-percent", Order::random, 0.5f, kTenPercent},
                                  {"scanline-10-percent", Order::scanline, 0.5f, kTenPercent},
                                  {"largest-10-percent", Order::largest, 0.5f, kTenPercent},
-                                 {"winner-takes-all", Order::attention, 0.5f, 0}};
+                                 {"winner-takes-all", Order::importance, 0.5f, 0}};
 
 app::CorrectiveOptions optionsOf(const Variant& variant) {
   app::CorrectiveOptions options;

@@ -50,12 +50,13 @@ bool RegionQueue::later(const Region& a, const Region& b) {
 /// One multiplication per level done, so that setPriorities with the values it already has changes no bit.
 float RegionQueue::reducedPriority(const Region& region) const {
   const float base = basePriority_[region.id];
-  float priority = std::min(base, 1.0f);
+  float priority = std::min(base, 1.0f) * gains_[region.id];
   for (int l = 1; l < region.cursor.level; ++l) priority *= kept_;
   return priority + std::max(base - 1, 0.0f);
 }
 
-void RegionQueue::beginFrame(FramePtr frame) {
+void RegionQueue::beginFrame(FramePtr frame, std::vector<float> gains) {
+  gains.resize(frame->extents.size(), 1);
   {
     const std::lock_guard lock(mutex_);
     if (!frame_ || frame_->epoch != frame->epoch) nextSequence_ = 0;
@@ -63,6 +64,7 @@ void RegionQueue::beginFrame(FramePtr frame) {
     std::swap(frame_, frame);
     const auto& extents = frame_->extents;
     if (basePriority_.size() < extents.size()) basePriority_.resize(extents.size(), kUnseenPriority);
+    std::swap(gains_, gains);
     heap_.clear();
     for (std::uint32_t id = 1; id < extents.size(); ++id) {
       const ObjectExtent& e = extents[id];

@@ -52,7 +52,9 @@ class RegionQueue {
 
   /// A new frame: every region starts again at its object's start level, with its last known priority (1 for
   /// an object that the analyzer has not seen yet). Sequence numbers start at 0 with every new epoch.
-  void beginFrame(FramePtr frame);
+  /// `gains`: what a sample is worth by id, (0, 1] (core/corrective/sample_gains.h), 1 for ids beyond its
+  /// end: a factor of what inhibition reduces, too.
+  void beginFrame(FramePtr frame, std::vector<float> gains = {});
   /// Priorities in (0, kHighestPriority] by id, from the analyzer; ids beyond the span keep theirs, and [0]
   /// is ignored. Higher values count as kHighestPriority, NaN and negative ones as kLowestPriority, 0 (not in
   /// the picture) as kUnseenPriority. Regions keep their progress; the reductions by level that they have
@@ -82,7 +84,7 @@ class RegionQueue {
  private:
   struct Region {
     std::uint32_t id = 0;
-    float priority = 0;  ///< reduced by level
+    float priority = 0;  ///< times gain, reduced by level
     LatticeCursor cursor;
     std::int64_t points = 1;  ///< lattice points in the box per job, about jobSize pixels on the mask
   };
@@ -97,6 +99,7 @@ class RegionQueue {
   std::condition_variable filled_;
   FramePtr frame_;
   std::vector<float> basePriority_;  ///< by id
+  std::vector<float> gains_;         ///< by id, of the present frame
   std::vector<Region> heap_;
   std::uint64_t nextSequence_ = 0;
   bool closed_ = false;

@@ -73,7 +73,8 @@ TEST(Analyzer, TheSliderCountsFromTheNextAnalysis) {
 }
 
 TEST(Analyzer, WhatIsAttendedToComesFirstWhateverTheOrderAndDecays) {
-  for (const Order order : {Order::attention, Order::task, Order::random, Order::scanline, Order::largest}) {
+  for (const Order order : {Order::attention, Order::importance, Order::gain, Order::task, Order::random,
+                            Order::scanline, Order::largest}) {
     double seconds = 100;
     Analyzer analyzer({.order = order}, [&seconds] { return seconds; });
     const AnalysisInput input = twoObjects(1);

@@ -90,7 +90,8 @@ TEST(Priorities, TheSliderGoesFromSaliencyToTask) {
 TEST(Priorities, AreInReachForAllThatIsVisibleAndZeroForTheRest) {
   const auto frame = fourObjects();
   const ImageGray nothingStandsOut(kWidth, kHeight, 0.0f);
-  for (const Order order : {Order::attention, Order::task, Order::random, Order::scanline, Order::largest}) {
+  for (const Order order : {Order::attention, Order::importance, Order::gain, Order::task, Order::random,
+                            Order::scanline, Order::largest}) {
     for (const float weight : {0.0f, 0.5f, 1.0f}) {
       const auto priority =
           importanceOf(*frame, nothingStandsOut, {.order = order, .attention = weight}).priority;
@@ -114,6 +115,7 @@ TEST(Priorities, OfTheBaselines) {
   EXPECT_EQ(rank(Order::scanline), (Ids{1, 3, 2, 5}));
   EXPECT_EQ(rank(Order::largest), (Ids{3, 5, 1, 2}));  // 1 and 2 are of equal size
   EXPECT_EQ(rank(Order::task), (Ids{2, 3, 5, 1}));
+  EXPECT_EQ(rank(Order::gain), (Ids{1, 2, 3, 5})) << "all alike: the queue's gains decide";
   EXPECT_EQ(rank(Order::random), rank(Order::random));
   std::set<Ids> seen;
   for (std::uint32_t seed = 1; seed <= 200; ++seed) seen.insert(rank(Order::random, seed));

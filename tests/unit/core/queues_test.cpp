@@ -193,6 +193,23 @@ TEST(RegionQueue, WhatExceedsOneIsNotInhibited) {
   EXPECT_EQ(pixels, frame->extents[2].pixels) << "all of it before anything of the others";
 }
 
+TEST(RegionQueue, GainsAreFactorsOfWhatIsInhibited) {
+  const auto frame = twoSquares();
+  RegionQueue queue(16, 0.5f);
+  queue.setPriorities(std::vector<float>{0, 0.9f, 0.5f, 0.4f});
+  queue.beginFrame(frame, {1, 0.5f});  // 2 and 3 have 1
+  EXPECT_EQ(queue.tryPop()->id, 2u);
+  for (const Job& job : drain(queue)) {
+    const float gained = job.id == 1 ? 0.45f : job.id == 2 ? 0.5f : 0.4f;
+    EXPECT_FLOAT_EQ(job.priority, gained * std::pow(0.5f, static_cast<float>(job.begin.level - 1)));
+  }
+  queue.beginFrame(frame);
+  EXPECT_EQ(queue.tryPop()->id, 1u) << "gains are of one frame";
+  queue.setPriorities(std::vector<float>{0, 2, 0.5f, 0.4f});
+  queue.beginFrame(frame, {1, 1e-3f});
+  EXPECT_EQ(queue.tryPop()->id, 1u) << "a click counts whole";
+}
+
 TEST(RegionQueue, RanksSayWhoIsNext) {
   RegionQueue queue(16);
   EXPECT_TRUE(queue.ranks().empty());
