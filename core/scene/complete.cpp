@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <string>
 #include <tuple>
@@ -162,6 +163,17 @@ void addDefaults(Scene& scene, const Surroundings& around, bool camera, bool lig
   }
 }
 
+void warnOfUnit(Scene& scene) {
+  const Vec3 size = scene.bounds.extent();
+  char text[160];
+  std::snprintf(
+      text, sizeof text,
+      "the room is %.0f x %.0f m wide and %.0f m high: if the file's unit is not the metre, name it, "
+      "as in --unit-scale 0.01 for centimetres",
+      size.x, size.z, size.y);
+  scene.warnings.emplace_back(text);
+}
+
 /// Every object names a material that is there; scenes made in memory may leave their nodes to be made here.
 void checkObjects(Scene& scene) {
   for (const Object& o : scene.objects) {
@@ -197,6 +209,7 @@ void completeScene(Scene& scene, const LoadOptions& options, LoadBudget* budget)
   if (noCamera || dark) {
     // Looked at once, before a default light changes the bounds.
     const Surroundings around = look(scene);
+    if (isNoMetreRoom(scene, around)) warnOfUnit(scene);
     addDefaults(scene, around, noCamera, dark && onlyDimEmitters(scene, around));
   }
   lookAtClock();

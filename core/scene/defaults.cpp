@@ -13,11 +13,15 @@ namespace saccade::core {
 namespace {
 
 constexpr float kPanelSide = 1, kPanelHeight = 0.95f, kPanelRadiance = 15;
+/// Of a floor, m^2, that a panel of kPanelSide lights; over a larger one it grows with it.
+constexpr float kPanelFloor = 200;
 /// Emitters that would light the faces of the bounds by less than this, W/m^2 on average, light nothing one
 /// would see: a lit label, windows painted white. A room keeps its light, around things most of it is lost.
 constexpr double kDimRoom = 0.05, kDimOpen = 0.25;
 constexpr float kFov = 60;
 constexpr float kEyeHeight = 1.6f;
+/// Metres. A room that is higher was not modelled in metres: its size says nothing of a person's.
+constexpr float kHighestRoom = 100;
 constexpr float kSmallestRoom = 1.2f;
 /// Rays to each face of the bounds: a grid of this many points a side; a face is open when more than half
 /// miss.
@@ -157,7 +161,7 @@ float freeWay(const Scene& scene, const Vec3& eye, const Vec3& forward, float lo
 Camera insideRoom(const Scene& scene) {
   const Bounds& box = scene.bounds;
   const Vec3 extent = box.extent();
-  const float height = std::min(kEyeHeight, 0.6f * extent.y);
+  const float height = extent.y > kHighestRoom ? 0.6f * extent.y : std::min(kEyeHeight, 0.6f * extent.y);
   Camera best;
   float farthest = -1;
   for (const int axis : {0, 2}) {
@@ -233,13 +237,18 @@ void addPanel(Scene& scene, const std::string& name, const Vec3& center, Vec2 si
 
 namespace {
 
+/// Of the panel of a room, metres.
+float panelSide(const Vec3& room) {
+  return kPanelSide * std::max(1.0f, std::sqrt(room.x * room.z / kPanelFloor));
+}
+
 /// Lowest height of what is above the panel's place, at most the top of the bounds.
-float ceilingHeight(const Scene& scene) {
+float ceilingHeight(const Scene& scene, float side) {
   const Vec3 middle = scene.bounds.center();
   float height = scene.bounds.hi.y;
   for (const Vec2 corner :
        {Vec2(0), Vec2(-0.5f, -0.5f), Vec2(0.5f, -0.5f), Vec2(0.5f, 0.5f), Vec2(-0.5f, 0.5f)}) {
-    const Vec3 from = middle + kPanelSide * Vec3(corner.x, 0, corner.y);
+    const Vec3 from = middle + side * Vec3(corner.x, 0, corner.y);
     if (const auto hit = nearestHit(scene, from, Vec3(0, 1, 0)))
       height = std::min(height, from.y + hit->distance);
   }
@@ -278,15 +287,19 @@ bool onlyDimEmitters(const Scene& scene, const Surroundings& around) {
 void addDefaultLight(Scene& scene, const Surroundings& around) {
   const Bounds& box = scene.bounds;
   Vec3 center = box.center(), direction(0, -1, 0);
-  float side = kPanelSide;
+  float side = panelSide(box.extent());
   if (around.interior) {
-    center.y = glm::mix(box.lo.y, ceilingHeight(scene), kPanelHeight);
+    center.y = glm::mix(box.lo.y, ceilingHeight(scene, side), kPanelHeight);
   } else {
     direction = -keyDirection(scene);
     center -= 1.25f * box.diagonal() * direction;
     side = 0.5f * box.diagonal();
   }
   addPanel(scene, "default light", center, Vec2(side), direction, Vec3(kPanelRadiance));
+}
+
+bool isNoMetreRoom(const Scene& scene, const Surroundings& around) {
+  return around.interior && scene.bounds.extent().y > kHighestRoom;
 }
 
 Camera defaultCamera(const Scene& scene, const Surroundings& around) {

@@ -17,13 +17,18 @@ Surroundings look(const Scene& scene);
 /// in a room, 0.25 elsewhere (none included): a lit label, windows painted white. One sees nothing by them.
 bool onlyDimEmitters(const Scene& scene, const Surroundings& around);
 
-/// Adds an object emitting downwards, one metre square at 0.95 of the room's height, radiance 15. Departure:
+/// A room of more than 100 m height: its unit is hardly the metre.
+bool isNoMetreRoom(const Scene& scene, const Surroundings& around);
+
+/// Adds an object emitting downwards, one metre square at 0.95 of the room's height, radiance 15; over floors
+/// of more than 200 m^2 it is larger by as much, so that rooms of any unit are lit. Departure:
 /// a scene that is no room gets it above its bounds on the first camera's side, half as wide as their
 /// diagonal, so that things of any size are lit alike, where one looks at them.
 void addDefaultLight(Scene& scene, const Surroundings& around);
 
-/// 60 degrees. In a closed room: at eye height near one end, looking along the longest free way. In a room
-/// with one open side: outside it. Else three-quarter view from outside.
+/// 60 degrees. In a closed room: at eye height (of a room that is none in metres: 0.6 of its own) near one
+/// end, looking along the longest free way. In a room with one open side: outside it. Else three-quarter view
+/// from outside.
 Camera defaultCamera(const Scene& scene, const Surroundings& around);
 
 /// A rectangle facing `direction` as a new node, object and emitting material.

@@ -271,6 +271,26 @@ TEST(CompleteScene, DefaultLightInARoomHangsBelowTheCeiling) {
   EXPECT_LT(glm::cross(p[i[1]] - p[i[0]], p[i[2]] - p[i[0]]).y, 0);
 }
 
+TEST(CompleteScene, ARoomThatIsNotInMetresIsLitAndSeenAndSaysSo) {
+  struct Room {
+    float unit;
+    bool warns;
+  };
+  for (const Room& room : {Room{1, false}, Room{30, false}, Room{100, true}, Room{1000, true}}) {
+    Scene scene = twoMaterials();
+    const float u = room.unit;
+    addObject(scene, turnedInsideOut(boxMesh(Vec3(-3, 0, -4) * u, Vec3(3, 2.5f, 4) * u)), 0, 0);
+    completeScene(scene, {});
+    ASSERT_TRUE(scene.defaultLight);
+    const float side = scene.objects[1].bounds.extent().x, floor = 48 * u * u;
+    EXPECT_NEAR(side * side, std::max(1.0f, floor / 200), 1e-4f * side * side);
+    const float eye = scene.cameras[0].eye.y;
+    EXPECT_NEAR(eye, room.warns ? 0.6f * 2.5f * u : std::min(1.6f, 1.5f * u), 1e-4f * u);
+    const auto saysSo = [](const std::string& w) { return w.find("--unit-scale") != std::string::npos; };
+    EXPECT_EQ(std::any_of(scene.warnings.begin(), scene.warnings.end(), saysSo), room.warns) << u;
+  }
+}
+
 TEST(CompleteScene, DefaultLightHangsBelowWhatIsAboveTheMiddle) {
   // A shell around the room, as exporters leave it: the light must not hang between the two.
   Scene scene = twoMaterials();
