@@ -157,7 +157,23 @@ void drawProgress(const FrameLoop& loop) {
   ImGui::Text("%u non-diffuse pixels", pixels);
 }
 
+/// Closed at first: a line says that there is something to know.
+void drawNotes(const std::vector<std::string>& notes, UiItems& items) {
+  if (notes.empty()) return;
+  // What follows ### identifies the section, so that it stays open for the next scene.
+  const std::string title = "Notes on the scene: " + std::to_string(notes.size()) + "###notes";
+  if (!section(title.c_str(), items, "section notes", false)) return;
+  ImGui::BeginGroup();
+  for (const std::string& note : notes) {
+    ImGui::Bullet();
+    ImGui::TextWrapped("%s", note.c_str());
+  }
+  ImGui::EndGroup();
+  items.note("notes");
+}
+
 void drawSections(PanelState& s, const PanelView& view) {
+  drawNotes(view.notes, view.items);
   if (section("Attention", view.items, "section attention")) drawAttention(s, view.items);
   if (section("Picture", view.items, "section picture")) drawPicture(s, view.items);
   if (section("Overlay", view.items, "section overlay")) drawOverlayChoice(s, view);

@@ -56,6 +56,7 @@ struct ShownOverlay {
 
 /// What the panel shows of the open scene, and where.
 struct PanelView {
+  const std::vector<std::string>& notes;  ///< what reading the scene had to say (core::Scene::warnings)
   const FrameLoop& loop;
   const StageTimes& times;
   const LiveError::State& error;

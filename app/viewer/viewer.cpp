@@ -245,7 +245,8 @@ class Viewer {
     drawOpenings(size);
     if (!scene_) return;
     const LiveError::State error = scene_->error();
-    drawPanel(panel_, {.loop = scene_->loop(),
+    drawPanel(panel_, {.notes = scene_->workspace().scene.warnings,
+                       .loop = scene_->loop(),
                        .times = times_,
                        .error = error,
                        .tools = scene_->tools(),

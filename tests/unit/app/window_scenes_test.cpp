@@ -83,6 +83,27 @@ TEST_F(WindowScenes, WhatIsNoSceneIsSaidAndChangesNothing) {
   EXPECT_EQ(status, 0);
 }
 
+TEST_F(WindowScenes, WhatReadingTheSceneHadToSayIsInThePanel) {
+  const std::filesystem::path dark = std::filesystem::current_path() / "dark.obj";
+  std::ofstream(dark) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";  // no camera, no light
+  const int status = DrivenViewer::run(drivenOptions(), [&](DrivenViewer& viewer) {
+    viewer.untilOpen();
+    EXPECT_EQ(viewer.state().items.at("section notes").width, 0) << "of a scene that is as it should be";
+    drop(viewer, {dark});
+    viewer.until("it is open", [&] { return viewer.state().scene == dark.string(); });
+    viewer.frames(2);
+    EXPECT_EQ(viewer.state().items.at("notes").width, 0);
+    viewer.clickOn("section notes");
+    viewer.until("the notes are shown", [&] { return viewer.state().items.at("notes").width > 0; });
+    viewer.frames(2);
+    const core::ImageRgba8 notes = viewer.control("notes");
+    EXPECT_GT(notes.height(), 60) << "camera and light, two lines each at least";
+    const core::Rgba8 white{255, 255, 255, 255};
+    EXPECT_GT(pixelsOf(notes, white), 200u) << "letters";
+  });
+  EXPECT_EQ(status, 0);
+}
+
 TEST_F(WindowScenes, CancelKeepsTheOldScene) {
   const std::filesystem::path other = copied("gallery.glb", "long.glb");
   const int status = DrivenViewer::run(drivenOptions(), [&](DrivenViewer& viewer) {
