@@ -10,6 +10,7 @@
 #include "bench/many_lights/many_lights.h"
 #include "bench/maps/maps.h"
 #include "bench/moving/moving.h"
+#include "bench/overlays/overlays.h"
 #include "bench/paper/figure5.h"
 #include "bench/paper/figure6.h"
 #include "bench/paper/gallery_walk.h"
@@ -84,6 +85,7 @@ const std::vector<Experiment>& allExperiments() {
        "How near is what light probes tell to the converged picture, until samples arrive?",
        {},
        &measureApproximation},
+      {"overlays", "What does an overlay cost a frame in the window?", {}, &measureOverlays},
       {"growth",
        "How do frame time and memory grow with the scene, the cache, the picture and the tracers?",
        {},

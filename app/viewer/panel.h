@@ -9,6 +9,7 @@
 #include "app/session/frame_loop.h"
 #include "app/session/live_error.h"
 #include "app/session/overlays.h"
+#include "app/viewer/overlay_view.h"
 #include "app/viewer/scene_tools.h"
 #include "app/viewer/stage_bars.h"
 #include "app/viewer/ui_items.h"
@@ -47,12 +48,6 @@ struct KeyHelp {
   const char* action;
 };
 const std::vector<KeyHelp>& keyHelp();
-
-/// The overlay that the picture shows.
-struct ShownOverlay {
-  AovScale scale;
-  AovLegend legend;
-};
 
 /// What the panel shows of the open scene, and where.
 struct PanelView {

@@ -32,7 +32,8 @@ SceneView::SceneView(const WalkOptions& options, std::shared_ptr<const Workspace
              options_.run.exposureEv, true}),
       home_(chooseCamera(workspace_->scene, options_.camera)),
       walker_(home_, workspace_->scene.bounds.diagonal()),
-      tools_(workspace_->scene) {
+      tools_(workspace_->scene),
+      overlay_(loop_, workspace_->scene, options_.corrective.maxAge) {
   if (recorder_) loop_.recordTo(*recorder_);
   liveError_.emplace(tracedBy(loop_.tracer()));
   if (!options_.path.empty()) tools_.play(CameraPath::read(options_.path), 0);
@@ -113,15 +114,10 @@ void SceneView::step(const PanelState& panel, ImageSize size, Clock::time_point 
 }
 
 const core::ImageRgba8& SceneView::shown(const PanelState& panel) {
-  shownOverlay_.reset();
+  if (!panel.overlay) overlay_.hide();
   if (!panel.overlay && !tools_.picked()) return loop_.display();
   picture_ = loop_.display();
-  if (panel.overlay) {
-    const AovImage image = aovImage(*panel.overlay, loop_);
-    const AovScale scale(*panel.overlay, image.values, options_.corrective.maxAge);
-    shownOverlay_ = {scale, aovLegend(scale, image.values, workspace_->scene)};
-    layOver(aovPicture(image, scale), panel.overlayStrength, picture_);
-  }
+  if (panel.overlay) overlay_.draw(*panel.overlay, panel.overlayStrength, picture_);
   if (tools_.picked()) outline(*tools_.picked(), workspace_->scene, loop_.frame(), picture_);
   return picture_;
 }

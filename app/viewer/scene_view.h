@@ -11,6 +11,7 @@
 #include "app/session/kept_cache.h"
 #include "app/session/live_error.h"
 #include "app/session/workspace.h"
+#include "app/viewer/overlay_view.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/scene_tools.h"
 #include "app/viewer/walker.h"
@@ -58,7 +59,7 @@ class SceneView {
   const core::Camera& camera() const { return walker_.camera(); }
   const SceneTools& tools() const { return tools_; }
   /// That shown() drew, if any.
-  const std::optional<ShownOverlay>& overlay() const { return shownOverlay_; }
+  const std::optional<ShownOverlay>& overlay() const { return overlay_.shown(); }
   LiveError::State error() const { return liveError_->state(); }
   RunStats stats() const;
 
@@ -80,7 +81,7 @@ class SceneView {
   core::Camera home_;
   Walker walker_;
   SceneTools tools_;
-  std::optional<ShownOverlay> shownOverlay_;
+  OverlayView overlay_;
   core::ImageRgba8 picture_;  ///< with overlay and outline
   Clock::time_point start_ = Clock::now();
   double lastMove_ = 0;                   ///< seconds since start_
