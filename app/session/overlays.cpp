@@ -223,6 +223,25 @@ std::vector<std::uint32_t> countsOf(const core::ImageGray& values) {
   return counts;
 }
 
+/// Whole numbers: all but saliency and importance.
+bool isCounted(Aov aov) { return aov != Aov::saliency && aov != Aov::importance; }
+
+/// scale.color of every value; whole numbers are looked up, since there are few of them.
+void paint(const core::ImageGray& values, const AovScale& scale, core::ImageRgba8& picture) {
+  const auto& from = values.pixels();
+  std::vector<core::Rgba8> colors;
+  float first = 0;
+  if (isCounted(scale.aov()) && !from.empty()) {
+    const auto [least, most] = std::minmax_element(from.begin(), from.end());
+    first = *least;
+    for (float value = first; value <= *most; ++value) colors.push_back(scale.color(value));
+  }
+  const auto color = [&](float value) {
+    return colors.empty() ? scale.color(value) : colors[static_cast<std::size_t>(value - first)];
+  };
+  std::transform(from.begin(), from.end(), picture.pixels().begin(), color);
+}
+
 }  // namespace
 
 AovImage aovImage(Aov aov, const FrameLoop& loop) {
@@ -268,8 +287,7 @@ core::Rgba8 AovScale::color(float value) const {
 
 core::ImageRgba8 aovPicture(const AovImage& image, const AovScale& scale) {
   core::ImageRgba8 picture(image.values.width(), image.values.height());
-  const auto color = [&](float value) { return scale.color(value); };
-  std::transform(image.values.pixels().begin(), image.values.pixels().end(), picture.pixels().begin(), color);
+  paint(image.values, scale, picture);
   for (std::size_t i = 0; i < image.edges.size(); ++i) {
     if (image.edges[i] == 0) continue;
     core::Rgba8& p = picture.pixels()[i];
