@@ -234,7 +234,8 @@ void paint(const core::ImageGray& values, const AovScale& scale, core::ImageRgba
   if (isCounted(scale.aov()) && !from.empty()) {
     const auto [least, most] = std::minmax_element(from.begin(), from.end());
     first = *least;
-    for (float value = first; value <= *most; ++value) colors.push_back(scale.color(value));
+    for (int value = static_cast<int>(*least); value <= static_cast<int>(*most); ++value)
+      colors.push_back(scale.color(static_cast<float>(value)));
   }
   const auto color = [&](float value) {
     return colors.empty() ? scale.color(value) : colors[static_cast<std::size_t>(value - first)];
