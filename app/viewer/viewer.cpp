@@ -38,8 +38,10 @@ using render::Key;
 /// Before main, after the libraries were loaded.
 const Clock::time_point kProgramStart = Clock::now();
 
-constexpr std::chrono::milliseconds kIdlePause{20};   ///< of frames that show no scene
-constexpr std::chrono::milliseconds kUploadTime{10};  ///< of a frame, for the scene that is being opened
+constexpr std::chrono::milliseconds kIdlePause{20};  ///< of frames that show no scene
+/// Of a frame, for the scene that is being opened: beside one in which a person walks on, and where there is
+/// but Cancel to answer and every frame of the progress delays the first picture.
+constexpr std::chrono::milliseconds kUploadBeside{10}, kUploadAlone{80};
 
 double secondsBetween(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
@@ -172,7 +174,7 @@ class Viewer {
     if (reading && (!ahead_ || ahead_->workspace() != reading->workspace))
       ahead_.emplace(*reading, window_.context());
     uploading_ = ahead_ && !ahead_->done();
-    if (uploading_ && !ahead_->upload(Clock::now() + kUploadTime)) return;
+    if (uploading_ && !ahead_->upload(Clock::now() + (scene_ ? kUploadBeside : kUploadAlone))) return;
     if (!opened) return;
     if (auto outcome = opener_.take()) show(*outcome);
   }
