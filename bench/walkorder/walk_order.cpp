@@ -15,7 +15,7 @@ constexpr app::ImageSize kSize{512, 512};
 constexpr std::uint64_t kSamples[] = {1000, 5000, 20000};
 constexpr std::uint32_t kSeeds[] = {1, 2, 3};  ///< of random order
 constexpr float kTenPercent = 0.1f;
-constexpr const char* kScenes[] = {"gallery", "table", "ward"};
+constexpr const char* kScenes[] = {"gallery", "table", "ward", "cornell"};
 constexpr const char* kUsual = "attention";
 
 struct Variant {
