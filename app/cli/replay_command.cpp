@@ -81,7 +81,8 @@ class Other {
 void reportCheck(const SessionCheck& check) {
   if (!check.sameMachine())
     spdlog::warn(
-        "recorded with another renderer, context or CPU: {} pictures are equal bit for bit, {} within {} of "
+        "recorded with another renderer, context, CPU or version of Saccade: {} pictures are equal bit for "
+        "bit, {} within {} of "
         "255 in "
         "every tile",
         check.equal(), check.similar(), check.largestTileDifference());

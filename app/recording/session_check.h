@@ -11,8 +11,8 @@
 
 namespace saccade::app {
 
-/// Hashes bind to context, renderer and CPU. Where these are others than the recording's, pictures whose hash
-/// differs still pass when no tile's mean differs by more than kTileTolerance of 255.
+/// Hashes bind to context, renderer, CPU and format. Where these are others than the recording's, pictures
+/// whose hash differs still pass when no tile's mean differs by more than kTileTolerance of 255.
 class SessionCheck {
  public:
   SessionCheck(const RecordedOn& recorded, const RecordedOn& here) : sameMachine_(recorded == here) {}

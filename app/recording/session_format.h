@@ -14,7 +14,9 @@ namespace saccade::app {
 /// PRAGMA application_id, "Sacc": tells recordings from other databases.
 inline constexpr std::uint32_t kSessionApplicationId = 0x53616363;
 /// PRAGMA user_version. Raised when a reader of the last version would get something wrong.
-inline constexpr int kSessionVersion = 2;  ///< 2: the setting `approximation`
+/// 2: the setting `approximation`. 3: warped samples rank by their effective level, so that pictures of older
+/// files are replayed almost as they were.
+inline constexpr int kSessionVersion = 3;
 
 extern const char* const kSessionTables;  ///< CREATE TABLE statements
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/cli/options.h"
+#include "app/recording/session_format.h"
 #include "app/session/workspace.h"
 
 namespace saccade::app {
@@ -15,6 +16,7 @@ struct RecordedOn {
   std::string context;   ///< render::GlContext::name
   std::string renderer;  ///< render::GlContext::renderer
   std::string cpu;       ///< cpuName()
+  int format = kSessionVersion;
 
   bool operator==(const RecordedOn&) const = default;
 };

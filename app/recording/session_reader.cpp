@@ -87,6 +87,7 @@ struct SessionReader::State {
   FrameSettings current;                           ///< of the frame read last
   std::optional<RecordedFrame> next;
   std::int64_t framesRead = 0, backwardTimes = 0;
+  int version = 0;                       ///< of the format
   double seconds = 0;                    ///< of the frame read last
   std::string frameDamage, batchDamage;  ///< of what comes after the frame read last; within it
 
@@ -99,7 +100,7 @@ struct SessionReader::State {
       refuse(file,
              "is no recorded session, or its walk was stopped before it began; make one with 'saccade walk "
              "--record'");
-    const int version = db.execAndGet("PRAGMA user_version").getInt();
+    version = db.execAndGet("PRAGMA user_version").getInt();
     if (version > kSessionVersion)
       refuse(file, "was recorded by a newer Saccade (format " + std::to_string(version) +
                        ", this one reads " + std::to_string(kSessionVersion) + "); replay it with that one");
@@ -138,7 +139,7 @@ struct SessionReader::State {
     }
     info.maps = text("maps");
     info.mapsHash = number("maps_hash", 16);
-    info.on = {text("context"), text("renderer"), text("cpu")};
+    info.on = {text("context"), text("renderer"), text("cpu"), version};
     sampleBytes = static_cast<std::size_t>(number("sample_bytes", 10));
     if (sampleBytes < kSmallestSampleBytes || sampleBytes > 4096)
       refuse(file, "'sample_bytes' in its table 'session' is out of range; record the session again");

@@ -46,10 +46,18 @@ void CorrectedPicture::draw(const core::View& view) {
 void CorrectedPicture::warp() {
   const StageTimer timer(stats_, "warp");
   layer_.beginFrame(frame_);
+  reused_ = false;
   if (!settings_.reuse) return;
   const render::SampleCache::WarpResult warped = cache_.warp(*frame_, layer_);
   stats_.samplesReused += warped.splatted;
   stats_.samplesDropped += warped.dropped;
+  reused_ = warped.splatted > 0;
+}
+
+core::KnownLevels CorrectedPicture::known() {
+  if (!reused_) return nullptr;
+  const StageTimer timer(stats_, "warp");
+  return std::make_shared<const std::vector<std::uint8_t>>(layer_.levels());
 }
 
 /// After resume(): draws the frame without aging. False where it is not the one that the visit ended with.

@@ -77,6 +77,8 @@ class CorrectedPicture {
   const core::FramePtr& frame() const { return frame_; }  ///< null before the first begin
   /// The frame as begin() left it, with only those pixels on its mask that were not exact then.
   const core::FramePtr& toTrace() const { return toTrace_; }
+  /// What the picture shows before anything is traced, to be asked after begin(): null for no sample at all.
+  core::KnownLevels known();
   const core::ImageRgba8& display() const { return *display_; }  ///< of the last composite
   /// The same for another thread: the next composite goes into another image.
   std::shared_ptr<const core::ImageRgba8> shareDisplay();
@@ -106,6 +108,7 @@ class CorrectedPicture {
   render::CorrectionLayer layer_;
   render::SampleCache cache_;
   core::FramePtr frame_, toTrace_;
+  bool reused_ = false;  ///< begin() has splatted samples of older cameras
   std::optional<VisitEnd> resumed_;
   std::optional<render::Approximation> approximation_;  ///< once it was on
   std::vector<core::Pixel> bare_;         ///< without a splat, of the last composite; empty where off

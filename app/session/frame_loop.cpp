@@ -86,8 +86,8 @@ void FrameLoop::beginFrame(const core::Camera& camera, ImageSize size) {
   if (!options_.asynchronousAnalysis) analyseNow();
   gains_.beginFrame();
   const bool gained = attention::usesGains(options_.corrective.attention.order);
-  regions_.beginFrame(picture_.toTrace(),
-                      gained ? gains_.byId(frame().extents.size()) : std::vector<float>{});
+  regions_.beginFrame(picture_.toTrace(), gained ? gains_.byId(frame().extents.size()) : std::vector<float>{},
+                      picture_.known());
 }
 
 void FrameLoop::analyseNow() {

@@ -32,9 +32,10 @@ core::ImageGray squaredErrors(const core::ImageRgb& truth, const core::ImageRgb&
 
 }  // namespace
 
-OrderWalk::OrderWalk(const Stage& stage, const app::CameraPath& path, app::ImageSize size, std::uint32_t seed)
+OrderWalk::OrderWalk(const Stage& stage, const app::CameraPath& path, double place, app::ImageSize size,
+                     std::uint32_t seed)
     : stage_(stage), size_(size), seed_(seed) {
-  const double begin = std::max(0.0, path.lengthSeconds() / 2 - 0.5 * kFrames * kFrameSeconds);
+  const double begin = std::max(0.0, path.lengthSeconds() * place - 0.5 * kFrames * kFrameSeconds);
   const raytrace::CorrectiveTracer tracer(*stage.workspace->world, {.seed = seed});
   for (int i = 0; i < kFrames; ++i) {
     cameras_.push_back(path.at(begin + i * kFrameSeconds));
@@ -44,9 +45,7 @@ OrderWalk::OrderWalk(const Stage& stage, const app::CameraPath& path, app::Image
     const raytrace::TraceAllResult all = raytrace::traceAll(tracer, *frame, stage.cores, {});
     keyViews_.push_back(
         {i, Grader(core::compositeLinear(size.width, size.height, frame->baseAndId, all.corrections))});
-    nonDiffuseShare_ += static_cast<double>(frame->nonDiffusePixels) / (size.width * size.height);
   }
-  nonDiffuseShare_ /= static_cast<double>(keyViews_.size());
 }
 
 WalkError OrderWalk::walk(const app::CorrectiveOptions& options, std::uint64_t samplesPerFrame) const {

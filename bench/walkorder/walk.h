@@ -16,16 +16,16 @@ struct WalkError {
   double rmse = 0, rmseSalient = 0, flip = 0, flipSalient = 0;
 };
 
-/// 1.4 seconds in the middle of a path at 25 frames a second. GL thread; the stage must outlive it.
+/// 1.4 seconds of a path at 25 frames a second. GL thread; the stage must outlive it.
 class OrderWalk {
  public:
-  /// Traces the converged pictures, with the seed that walks are to have.
-  OrderWalk(const Stage& stage, const app::CameraPath& path, app::ImageSize size, std::uint32_t seed);
+  /// About `place` in [0, 1] of the path. Traces the converged pictures, with the seed that walks are to
+  /// have.
+  OrderWalk(const Stage& stage, const app::CameraPath& path, double place, app::ImageSize size,
+            std::uint32_t seed);
 
   /// From nothing, frame by frame with so many new samples each.
   WalkError walk(const app::CorrectiveOptions& options, std::uint64_t samplesPerFrame) const;
-  /// Of the picture, mean over the key views.
-  double nonDiffuseShare() const { return nonDiffuseShare_; }
 
  private:
   struct KeyView {
@@ -37,7 +37,6 @@ class OrderWalk {
   const std::uint32_t seed_;
   std::vector<core::Camera> cameras_;
   std::vector<KeyView> keyViews_;
-  double nonDiffuseShare_ = 0;
 };
 
 }  // namespace saccade::bench

@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "bench/walkorder/scenes.h"
 #include "bench/walkorder/walk.h"
 
 namespace saccade::bench {
@@ -13,9 +14,7 @@ using attention::Order;
 
 constexpr app::ImageSize kSize{512, 512};
 constexpr std::uint64_t kSamples[] = {1000, 5000, 20000};
-constexpr std::uint32_t kSeeds[] = {1, 2, 3};  ///< of random order
-constexpr float kTenPercent = 0.1f;
-constexpr const char* kScenes[] = {"gallery", "table", "ward", "cornell"};
+constexpr double kPlaces[] = {0.25, 0.5, 0.75};  ///< middles of the stretches, of the path
 constexpr const char* kUsual = "attention";
 
 struct Variant {
@@ -23,22 +22,20 @@ struct Variant {
   Order order;
   float attention = 0.5f;
   float inhibition = core::RegionQueue::kInhibition;
+  bool everywhere = true;  ///< else in the bundled scenes only
 };
 
 // The usual one first.
 constexpr Variant kVariants[] = {{kUsual, Order::attention},
                                  {"importance", Order::importance},
                                  {"gain", Order::gain},
-                                 {"saliency", Order::attention, 0},
-                                 {"task", Order::task},
                                  {"random", Order::random},
                                  {"scanline", Order::scanline},
                                  {"largest", Order::largest},
-                                 {"importance-10-percent", Order::importance, 0.5f, kTenPercent},
-                                 {"random-10-percent", Order::random, 0.5f, kTenPercent},
-                                 {"scanline-10-percent", Order::scanline, 0.5f, kTenPercent},
-                                 {"largest-10-percent", Order::largest, 0.5f, kTenPercent},
-                                 {"winner-takes-all", Order::importance, 0.5f, 0}};
+                                 {"saliency", Order::attention, 0, core::RegionQueue::kInhibition, false},
+                                 {"task", Order::task, 0.5f, core::RegionQueue::kInhibition, false},
+                                 {"importance-10-percent", Order::importance, 0.5f, 0.1f, false},
+                                 {"winner-takes-all", Order::importance, 0.5f, 0, false}};
 
 app::CorrectiveOptions optionsOf(const Variant& variant) {
   app::CorrectiveOptions options;
@@ -48,7 +45,9 @@ app::CorrectiveOptions optionsOf(const Variant& variant) {
   return options;
 }
 
-using Errors = std::vector<WalkError>;  ///< by seed
+using Errors = std::vector<WalkError>;                      ///< by stretch
+using Ratios = std::map<std::string, std::vector<double>>;  ///< by figure
+using RatiosBySamples = std::map<std::uint64_t, Ratios>;    ///< of many walks
 
 Record recordOf(const std::string& scene, const std::string& variant, std::uint64_t samples) {
   Record record;
@@ -71,53 +70,80 @@ Record errorsOf(const std::string& scene, const std::string& variant, std::uint6
   return record;
 }
 
-/// The usual order's error over every other's, each seed over its own.
-Record againstOf(const std::string& scene, std::uint64_t samples, const std::map<std::string, Errors>& all) {
-  Record record = recordOf(scene, "against", samples);
+/// The usual order's errors over those of every other.
+Ratios ratiosOf(const std::map<std::string, Errors>& all) {
+  Ratios ratios;
   const Errors& ours = all.at(kUsual);
-  for (const auto& [name, errors] : all) {
+  for (const auto& [name, theirs] : all) {
     if (name == kUsual) continue;
-    const Errors& theirs = errors;
-    const auto over = [&](double WalkError::*figure) {
-      std::vector<double> ratios;
-      for (std::size_t i = 0; i < theirs.size(); ++i) ratios.push_back(ours[i].*figure / (theirs[i].*figure));
-      return Value::ratio(ratios, Better::lower);
-    };
-    record.values["flip_salient_over_" + name] = over(&WalkError::flipSalient);
-    record.values["rmse_over_" + name] = over(&WalkError::rmse);
+    for (std::size_t i = 0; i < theirs.size(); ++i) {
+      ratios["flip_salient_over_" + name].push_back(ours[i].flipSalient / theirs[i].flipSalient);
+      ratios["rmse_over_" + name].push_back(ours[i].rmse / theirs[i].rmse);
+    }
   }
+  return ratios;
+}
+
+Record againstOf(const std::string& scenes, std::uint64_t samples, const Ratios& ratios) {
+  Record record = recordOf(scenes, "against", samples);
+  for (const auto& [figure, values] : ratios) record.values[figure] = Value::ratio(values, Better::lower);
   return record;
 }
+
+/// All orders in one scene.
+class SceneWalks {
+ public:
+  SceneWalks(Session& session, const WalkedScene& scene)
+      : session_(session),
+        keptApart_(scene.keptApart),
+        stage_(openStage(scene.file, "preview", session.options().seed, session.stop())) {
+    for (const double place : kPlaces)
+      walks_.emplace_back(*stage_, scene.path, place, kSize,
+                          session.options().seed + static_cast<std::uint32_t>(walks_.size()));
+  }
+
+  Ratios compare(std::uint64_t samples) {
+    std::map<std::string, Errors> all;
+    for (const Variant& variant : kVariants) {
+      if (keptApart_ && !variant.everywhere) continue;
+      for (const OrderWalk& walk : walks_) {
+        session_.checkStop();
+        all[variant.name].push_back(walk.walk(optionsOf(variant), samples));
+      }
+      Record record = errorsOf(stage_->name, variant.name, samples, all[variant.name]);
+      char line[160];
+      std::snprintf(line, sizeof line, "%s: rmse %.4f, FLIP weighted %.4f", record.key.c_str(),
+                    record.values["rmse"].median, record.values["flip_salient"].median);
+      session_.say(line);
+      session_.add(std::move(record), nullptr);
+    }
+    Ratios ratios = ratiosOf(all);
+    session_.add(againstOf(stage_->name, samples, ratios), nullptr);
+    return ratios;
+  }
+
+ private:
+  Session& session_;
+  const bool keptApart_;
+  const std::unique_ptr<Stage> stage_;
+  std::vector<OrderWalk> walks_;
+};
 
 }  // namespace
 
 void measureWalkOrder(Session& session) {
-  for (const char* scene : kScenes) {
-    const auto stage = openStage(bundledScene(scene), "preview", kSeeds[0], session.stop());
-    const auto path = app::CameraPath::read(bundledPath(scene));
-    std::vector<OrderWalk> walks;
-    for (const std::uint32_t seed : kSeeds) walks.emplace_back(*stage, path, kSize, seed);
+  RatiosBySamples bundled, keptApart;
+  for (const WalkedScene& scene : walkedScenes(session)) {
+    SceneWalks walks(session, scene);
     for (const std::uint64_t samples : kSamples) {
-      std::map<std::string, Errors> all;
-      for (const Variant& variant : kVariants) {
-        Errors& errors = all[variant.name];
-        // What random order is put beside has its seeds, too.
-        const bool everySeed = variant.order == Order::random || variant.name == std::string(kUsual);
-        for (const OrderWalk& walk : walks) {
-          session.checkStop();
-          errors.push_back(walk.walk(optionsOf(variant), samples));
-          if (!everySeed) break;
-        }
-        Record record = errorsOf(scene, variant.name, samples, errors);
-        char line[128];
-        std::snprintf(line, sizeof line, "%s: rmse %.4f, FLIP weighted %.4f", record.key.c_str(),
-                      record.values["rmse"].median, record.values["flip_salient"].median);
-        session.say(line);
-        session.add(std::move(record), nullptr);
-      }
-      session.add(againstOf(scene, samples, all), nullptr);
+      Ratios& pooled = (scene.keptApart ? keptApart : bundled)[samples];
+      for (const auto& [figure, values] : walks.compare(samples))
+        pooled[figure].insert(pooled[figure].end(), values.begin(), values.end());
     }
   }
+  for (const auto& [samples, ratios] : bundled) session.add(againstOf("bundled", samples, ratios), nullptr);
+  for (const auto& [samples, ratios] : keptApart)
+    session.add(againstOf("kept-apart", samples, ratios), nullptr);
 }
 
 }  // namespace saccade::bench

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/corrective/known_levels.h"
 #include "core/corrective/lattice.h"
 #include "core/image.h"
 #include "core/math/types.h"
@@ -83,14 +84,26 @@ struct Job {
   FramePtr frame;
   std::uint32_t id = 0;
   LatticeCursor begin;
-  std::int64_t points = 0;  ///< lattice points in the box, mask or not
-  bool omitCoarser = false;
+  std::int64_t points = 0;   ///< lattice points in the box, mask or not
+  bool omitCoarser = false;  ///< coarser levels have been walked before this one
   std::uint64_t sequence = 0;
   float priority = 0;
+  KnownLevels known;  ///< of the frame's pixels; a pixel waits for the first level finer than what is known
+  bool refresh = false;  ///< after the last level: the pixels known as well as a fresh sample of that level
+
+  /// Whether a lattice point of the job's level is this job's. Of all levels' jobs and the refreshing ones
+  /// every pixel on the mask is due in just one.
+  bool due(int x, int y) const {
+    const int level = begin.level;
+    const int best = known ? (*known)[frame->index(x, y)] : 0;
+    if (refresh) return best >= Lattice::kMaxLevel;
+    if (best + 1 >= level) return best + 1 == level;
+    return !omitCoarser || !Lattice::contains(level - 1, x, y);
+  }
 };
 
-/// Calls visit(x, y) for each pixel of the job: lattice points on the object's mask. The mask is read a few
-/// points behind the walk: points lie far apart, and each waits for memory.
+/// Calls visit(x, y) for each pixel of the job: lattice points on the object's mask that are due. The mask is
+/// read a few points behind the walk: points lie far apart, and each waits for memory.
 template <class Visit>
 void forEachPixel(const Job& job, Visit&& visit) {
   constexpr std::size_t kBehind = 8;
@@ -98,9 +111,11 @@ void forEachPixel(const Job& job, Visit&& visit) {
   Pixel pending[kBehind];
   std::size_t walked = 0;
   const auto look = [&](const Pixel& p) {
-    if (frame.idAt(p.x, p.y) == job.id) visit(p.x, p.y);
+    if (frame.idAt(p.x, p.y) == job.id && (!job.known || job.due(p.x, p.y))) visit(p.x, p.y);
   };
-  walkLattice(frame.extents[job.id].box, job.begin, job.points, job.omitCoarser, [&](int x, int y) {
+  // Where something is known, a point of a coarser level may still be due.
+  const bool omitCoarser = job.omitCoarser && !job.known;
+  walkLattice(frame.extents[job.id].box, job.begin, job.points, omitCoarser, [&](int x, int y) {
     __builtin_prefetch(&frame.ids[frame.index(x, y)]);
     Pixel& slot = pending[walked % kBehind];
     if (walked++ >= kBehind) look(slot);

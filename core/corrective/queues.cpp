@@ -1,6 +1,7 @@
 #include "core/corrective/queues.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -51,17 +52,19 @@ bool RegionQueue::later(const Region& a, const Region& b) {
 float RegionQueue::reducedPriority(const Region& region) const {
   const float base = basePriority_[region.id];
   float priority = std::min(base, 1.0f) * gains_[region.id];
-  for (int l = 1; l < region.cursor.level; ++l) priority *= kept_;
+  for (int l = 1; l < region.cursor.level + (region.refresh ? 1 : 0); ++l) priority *= kept_;
   return priority + std::max(base - 1, 0.0f);
 }
 
-void RegionQueue::beginFrame(FramePtr frame, std::vector<float> gains) {
+void RegionQueue::beginFrame(FramePtr frame, std::vector<float> gains, KnownLevels known) {
+  assert(!known || known->size() == frame->ids.size());
   gains.resize(frame->extents.size(), 1);
   {
     const std::lock_guard lock(mutex_);
     if (!frame_ || frame_->epoch != frame->epoch) nextSequence_ = 0;
     // The old frame, if it was the last reference, dies outside the lock, with the argument.
     std::swap(frame_, frame);
+    std::swap(known_, known);
     const auto& extents = frame_->extents;
     if (basePriority_.size() < extents.size()) basePriority_.resize(extents.size(), kUnseenPriority);
     std::swap(gains_, gains);
@@ -71,7 +74,7 @@ void RegionQueue::beginFrame(FramePtr frame, std::vector<float> gains) {
       if (e.pixels == 0) continue;
       const double boxPerMask = static_cast<double>(e.box.area()) / e.pixels;
       const auto points = static_cast<std::int64_t>(std::llround(jobSize_ * boxPerMask));
-      heap_.push_back({id, 0, beginLevel(e.box, e.startLevel), points});
+      heap_.push_back({id, 0, beginLevel(e.box, e.startLevel), false, points});
       heap_.back().priority = reducedPriority(heap_.back());
     }
     std::make_heap(heap_.begin(), heap_.end(), later);
@@ -99,19 +102,25 @@ std::optional<Job> RegionQueue::popLocked() {
   Region& region = heap_.back();
   const ObjectExtent& extent = frame_->extents[region.id];
   Job job{
-      frame_,          region.id,      region.cursor, region.points, region.cursor.level > extent.startLevel,
-      nextSequence_++, region.priority};
+      frame_,          region.id,       region.cursor, region.points, region.cursor.level > extent.startLevel,
+      nextSequence_++, region.priority, known_,        region.refresh};
   region.cursor = skipLattice(extent.box, region.cursor, region.points);
-  if (region.cursor.y >= extent.box.y1) {
-    if (region.cursor.level == Lattice::kMaxLevel) {
-      heap_.pop_back();
-      return job;
-    }
-    region.cursor = beginLevel(extent.box, region.cursor.level + 1);
-    region.priority = reducedPriority(region);
+  if (region.cursor.y >= extent.box.y1 && !beginNextLevel(region)) {
+    heap_.pop_back();
+  } else {
+    std::push_heap(heap_.begin(), heap_.end(), later);
   }
-  std::push_heap(heap_.begin(), heap_.end(), later);
   return job;
+}
+
+/// False when the region is done.
+bool RegionQueue::beginNextLevel(Region& region) const {
+  const bool last = region.cursor.level == Lattice::kMaxLevel;
+  if (last && (!known_ || region.refresh)) return false;
+  region.refresh = last;
+  region.cursor = beginLevel(frame_->extents[region.id].box, region.cursor.level + (last ? 0 : 1));
+  region.priority = reducedPriority(region);
+  return true;
 }
 
 std::optional<Job> RegionQueue::tryPop() {

@@ -53,8 +53,10 @@ class RegionQueue {
   /// A new frame: every region starts again at its object's start level, with its last known priority (1 for
   /// an object that the analyzer has not seen yet). Sequence numbers start at 0 with every new epoch.
   /// `gains`: what a sample is worth by id, (0, 1] (core/corrective/sample_gains.h), 1 for ids beyond its
-  /// end: a factor of what inhibition reduces, too.
-  void beginFrame(FramePtr frame, std::vector<float> gains = {});
+  /// end: a factor of what inhibition reduces, too. `known`, null or one entry for each of the frame's
+  /// pixels: a level's jobs pass over the pixels that are known as well already, and those that are known as
+  /// well as a fresh sample of the last level come when all levels are done, as one level more.
+  void beginFrame(FramePtr frame, std::vector<float> gains = {}, KnownLevels known = nullptr);
   /// Priorities in (0, kHighestPriority] by id, from the analyzer; ids beyond the span keep theirs, and [0]
   /// is ignored. Higher values count as kHighestPriority, NaN and negative ones as kLowestPriority, 0 (not in
   /// the picture) as kUnseenPriority. Regions keep their progress; the reductions by level that they have
@@ -86,12 +88,14 @@ class RegionQueue {
     std::uint32_t id = 0;
     float priority = 0;  ///< times gain, reduced by level
     LatticeCursor cursor;
+    bool refresh = false;     ///< all levels are done: see Job::refresh
     std::int64_t points = 1;  ///< lattice points in the box per job, about jobSize pixels on the mask
   };
   /// Heap order: whether b goes before a.
   static bool later(const Region& a, const Region& b);
   float reducedPriority(const Region& region) const;
   std::optional<Job> popLocked();
+  bool beginNextLevel(Region& region) const;
 
   const int jobSize_;  ///< pixels, at least 1
   const float kept_;   ///< of a priority when a level is done
@@ -100,6 +104,7 @@ class RegionQueue {
   FramePtr frame_;
   std::vector<float> basePriority_;  ///< by id
   std::vector<float> gains_;         ///< by id, of the present frame
+  KnownLevels known_;                ///< of the present frame
   std::vector<Region> heap_;
   std::uint64_t nextSequence_ = 0;
   bool closed_ = false;

@@ -147,7 +147,7 @@ void CorrectionLayer::splatWarped(const Splat& warped, std::uint32_t id, core::V
                     pixel.y < static_cast<float>(height_) + reach;
   if (!near) return;  // NaN included
   const std::int32_t youth = kMaxYouth - 1 - std::min<std::int32_t>(warped.ageFrames, kMaxYouth - 1);
-  const std::int32_t base = (warped.level << kLevelShift) | youth;
+  const std::int32_t base = (core::effectiveLevel(warped.level, warped.ageFrames) << kLevelShift) | youth;
   const int cx = static_cast<int>(std::floor(pixel.x)), cy = static_cast<int>(std::floor(pixel.y));
   const bool reached =
       warped.footprint == 1 ? stampPixel(warped, id, cx, cy, base) : stamp(warped, id, cx, cy, base);
@@ -303,6 +303,23 @@ std::uint32_t CorrectionLayer::coveredCount() const {
     for (const std::int32_t rank : tile.rank) count += rank != 0 && rank != kClosed;
   }
   return count;
+}
+
+std::vector<std::uint8_t> CorrectionLayer::levels() const {
+  std::vector<std::uint8_t> levels(static_cast<std::size_t>(width_) * height_);
+  std::size_t index = 0;
+  for (int top = 0; top < height_; top += kTile) {
+    for (int left = 0; left < width_; left += kTile, ++index) {
+      const int rows = std::min(kTile, height_ - top), columns = std::min(kTile, width_ - left);
+      for (int r = 0; r < rows; ++r) {
+        const std::int32_t* rank = tiles_[index].rank + r * kTile;
+        std::uint8_t* level = &levels[static_cast<std::size_t>(top + r) * width_ + left];
+        for (int c = 0; c < columns; ++c)
+          level[c] = static_cast<std::uint8_t>(rank[c] == kClosed ? 0 : rank[c] >> kLevelShift);
+      }
+    }
+  }
+  return levels;
 }
 
 void CorrectionLayer::listUncovered(std::vector<core::Pixel>& pixels) {

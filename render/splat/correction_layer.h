@@ -6,7 +6,7 @@
 // the rank of what it shows and a splat only covers what ranks lower. The picture is a function of the set of
 // samples, whatever their order. From the best:
 //   1. an exact sample, at its own pixel;
-//   2. the finer lattice level;
+//   2. the finer lattice level, of a warped sample the effective one (core/corrective/known_levels.h);
 //   3. a sample traced for this frame before one warped from an older camera;
 //   4. the nearer splat centre (Euclidean), then the centre of the smaller lattice index y * width + x;
 //   5. (same centre) the younger sample, then the smaller lattice index of the pixel it was traced for.
@@ -76,9 +76,12 @@ class CorrectionLayer {
   const Splat* shownAt(int x, int y) const;
   /// Pixels that show any splat; one pass over the image.
   std::uint32_t coveredCount() const;
+  /// width * height, row 0 = top: the level that ranks what a pixel shows, kMaxLevel + 1 where it is exact, 0
+  /// where nothing covers it.
+  std::vector<std::uint8_t> levels() const;
 
-  /// The pixels on the mask that show no splat, by aligned blocks of 2 x 2. Tiles that are known to be covered are passed
-  /// over: once all are, a call looks at no pixel.
+  /// The pixels on the mask that show no splat, by aligned blocks of 2 x 2. Tiles that are known to be
+  /// covered are passed over: once all are, a call looks at no pixel.
   void listUncovered(std::vector<core::Pixel>& pixels);
 
   /// width * height corrections, RGB and w = 0, row 0 = top; zero where nothing covers. Brings the changed

@@ -205,39 +205,68 @@ TEST_P(Walk, OfAFullCacheThenRestEqualsRayTraced) {
 }
 
 TEST_F(LoopTest, AFullCacheKeepsWhatWasHandedOutFirstOfTheOldestAge) {
-  // Beside a walk whose cache has room for all: of the oldest age there is a prefix, in the queue's order.
+  // Beside it a cache with room for all, which is given the same samples: of the oldest age that the full one
+  // holds, it holds a prefix in the queue's order.
+  FrameLoopOptions options{.threads = 0};
+  options.corrective.cacheMb = 1;
+  options.corrective.delta = 2;
+  options.corrective.attention.order = attention::Order::largest;  // whatever the picture shows
+  FrameLoop loop(workspace_, *gl_.renderer, options);
+  std::vector<core::SampleBatch> batches;
+  loop.onBatch = [&](core::SampleBatch& batch) { batches.push_back(batch); };
+  render::SampleCache roomy(std::size_t{64} << 20);
+  render::CorrectionLayer layer;
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  for (int i = 1; i <= 8; ++i) {
+    const std::size_t before = batches.size();
+    loop.step(path.at(i / 25.0), {640, 480}, FrameBudget::firstSamples(6000));
+    const auto frame = std::make_shared<core::FrameSnapshot>(loop.frame());
+    roomy.age(frame->view, {options.corrective.nMin, options.corrective.delta, options.corrective.maxAge});
+    layer.beginFrame(frame);
+    roomy.warp(*frame, layer);
+    for (std::size_t b = before; b < batches.size(); ++b) roomy.add(batches[b], frame->epoch);
+  }
   using PixelSet = std::set<std::pair<int, int>>;
-  std::vector<std::pair<int, int>> order;
+  PixelSet kept, all;
   std::uint64_t oldest = 0;
-  PixelSet kept[2];
-  for (const int run : {0, 1}) {
-    FrameLoopOptions options{.threads = 0};
-    options.corrective.cacheMb = run == 0 ? 1 : 64;
-    options.corrective.delta = 2;
-    options.corrective.attention.order = attention::Order::largest;  // whatever the picture shows
-    FrameLoop loop(workspace_, *gl_.renderer, options);
-    if (run == 1) {
-      loop.onBatch = [&](core::SampleBatch& batch) {
-        if (batch.epoch != oldest) return;
-        for (const core::Sample& s : batch.samples) order.push_back({s.x, s.y});
-      };
-    }
-    const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
-    for (int i = 1; i <= 8; ++i) loop.step(path.at(i / 25.0), {640, 480}, FrameBudget::firstSamples(6000));
-    loop.cache().forEach([&](const core::Sample& s, std::uint64_t age) {
-      if (oldest == 0) oldest = age;
-      if (age == oldest) kept[run].insert({s.x, s.y});
-    });
-  }
-  ASSERT_FALSE(kept[0].empty());
-  ASSERT_LT(kept[0].size(), kept[1].size());
+  loop.cache().forEach([&](const core::Sample& s, std::uint64_t age) {
+    if (oldest == 0) oldest = age;
+    if (age == oldest) kept.insert({s.x, s.y});
+  });
+  roomy.forEach([&](const core::Sample& s, std::uint64_t age) {
+    if (age == oldest) all.insert({s.x, s.y});
+  });
+  ASSERT_FALSE(kept.empty());
+  ASSERT_LT(kept.size(), all.size());
   std::size_t ofPrefix = 0;
-  for (const auto& pixel : order) {
-    if (ofPrefix == kept[0].size()) break;
-    if (!kept[1].contains(pixel)) continue;  // a younger sample on the same pixel took its place
-    ++ofPrefix;
-    EXPECT_TRUE(kept[0].contains(pixel)) << pixel.first << ", " << pixel.second;
+  for (const core::SampleBatch& batch : batches) {
+    for (const core::Sample& s : batch.samples) {
+      // Else of another age, or a younger sample on the same pixel took its place.
+      if (batch.epoch != oldest || !all.contains({s.x, s.y}) || ofPrefix == kept.size()) continue;
+      ++ofPrefix;
+      EXPECT_TRUE(kept.contains({s.x, s.y})) << s.x << ", " << s.y;
+    }
   }
+  EXPECT_EQ(ofPrefix, kept.size());
+}
+
+TEST_F(LoopTest, SamplesGoWhereWarpedOnesTellLeast) {
+  FrameLoop loop(workspace_, *gl_.renderer, {.threads = 0});
+  core::Camera camera = camera_;
+  loop.step(camera, size_, FrameBudget::firstSamples(1000));
+  camera.eye.x += 0.02f;
+  std::vector<core::Sample> samples;
+  loop.onBatch = [&](const core::SampleBatch& batch) {
+    samples.insert(samples.end(), batch.samples.begin(), batch.samples.end());
+  };
+  loop.step(camera, size_, FrameBudget::firstSamples(0));
+  const std::vector<std::uint8_t> known = loop.layer().levels();
+  std::size_t covered = 0;
+  for (const std::uint8_t level : known) covered += level > 0;
+  ASSERT_GT(covered, 1000u);
+  loop.step(camera, size_, FrameBudget::firstSamples(1000));
+  ASSERT_EQ(samples.size(), 1000u);
+  for (const core::Sample& s : samples) EXPECT_LT(known[loop.frame().index(s.x, s.y)], s.level);
 }
 
 TEST_P(Walk, BudgetsOfAllKindsMayFollowEachOther) {

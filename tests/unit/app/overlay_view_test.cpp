@@ -57,7 +57,7 @@ TEST_P(OverlayViews, AreComputedWhenWhatTheyShowHasChanged) {
   EXPECT_TRUE(computes()) << "another camera";
   step(0);
   EXPECT_FALSE(computes()) << "at rest without new samples";
-  step(300);
+  step(700);  // until another object is next
   EXPECT_EQ(computes(), tellsOfSplats(aov_) || aov_ == Aov::rank) << "new samples";
   loop_.setExposure(1);
   step(0);

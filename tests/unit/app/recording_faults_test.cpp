@@ -94,7 +94,7 @@ TEST(RecordingFaults, WhatIsNoSessionOfThisSceneIsRefusedInOneLine) {
   EXPECT_EQ(refusalOf(goodSession()), "");
   const std::pair<const char*, const char*> cases[] = {
       {"PRAGMA application_id = 1", "no recorded session"},
-      {"PRAGMA user_version = 3", "newer Saccade"},
+      {"PRAGMA user_version = 4", "newer Saccade"},
       {"PRAGMA user_version = 0", "format 0"},
       {"DROP TABLE frames", "no such table"},
       {"DELETE FROM session WHERE name = 'scene'", "has no 'scene'"},
@@ -366,7 +366,7 @@ TEST(ReplayCommand, VerifiesNamesComparesAndWrites) {
   tests::alter(file, "UPDATE session SET value = 'another' WHERE name = 'cpu'");
   const Ran elsewhere = saccade("replay " + quoted(file) + " --verify");
   EXPECT_EQ(elsewhere.status, 0) << elsewhere.err;
-  EXPECT_NE(elsewhere.err.find("another renderer, context or CPU"), std::string::npos) << elsewhere.err;
+  EXPECT_NE(elsewhere.err.find("another renderer, context, CPU or version"), std::string::npos) << elsewhere.err;
 }
 
 TEST(SessionFormat, TheDocumentedQueriesRun) {

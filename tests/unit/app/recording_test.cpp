@@ -200,6 +200,9 @@ TEST(SessionCheck, OnAnotherMachineTilesDecide) {
   app::SessionCheck same(here, here);
   EXPECT_FALSE(same.difference(frame, image));
   EXPECT_TRUE(same.difference(frame, oneOff)) << "bit for bit";
+  app::RecordedOn older = here;
+  --older.format;
+  EXPECT_FALSE(app::SessionCheck(older, here).difference(frame, oneOff)) << "another version's ranks";
   app::SessionCheck elsewhere(other, here);
   EXPECT_FALSE(elsewhere.difference(frame, image));
   EXPECT_FALSE(elsewhere.difference(frame, oneOff));

@@ -75,6 +75,64 @@ TEST(RegionQueue, HandsOutEveryMaskPixelExactlyOnce) {
   }
 }
 
+/// Of discs and speckles, 0 to one more than the finest level.
+KnownLevels randomKnown(const FrameSnapshot& frame, std::uint32_t seed) {
+  std::vector<std::uint8_t> known;
+  for (const std::uint32_t level : randomMask(frame.view.width(), frame.view.height(), 8, seed))
+    known.push_back(static_cast<std::uint8_t>(level));
+  return std::make_shared<const std::vector<std::uint8_t>>(std::move(known));
+}
+
+TEST(RegionQueue, AKnownPixelWaitsForTheFirstFinerLevel) {
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    for (const int jobSize : {1, 64, 100000}) {
+      const auto frame = frameOf(180, 130, randomMask(180, 130, 7, seed), 7);
+      const KnownLevels known = randomKnown(*frame, seed + 10);
+      RegionQueue queue(jobSize);
+      queue.setPriorities(randomPriorities(7, seed));
+      queue.beginFrame(frame, {}, known);
+      std::vector<int> visits(frame->ids.size(), 0);
+      for (const Job& job : drain(queue)) {
+        forEachPixel(job, [&](int x, int y) {
+          const std::size_t i = frame->index(x, y);
+          ++visits[i];
+          const int best = (*known)[i], finer = best + 1;
+          const int first = std::max({Lattice::levelOf(x, y), frame->extents[job.id].startLevel, finer});
+          EXPECT_EQ(job.refresh, best >= Lattice::kMaxLevel);
+          EXPECT_EQ(job.begin.level, std::min(first, Lattice::kMaxLevel));
+        });
+      }
+      EXPECT_TRUE(queue.exhausted());
+      for (std::size_t i = 0; i < visits.size(); ++i) ASSERT_EQ(visits[i], frame->ids[i] != 0 ? 1 : 0);
+    }
+  }
+}
+
+TEST(RegionQueue, NothingKnownIsAsNoKnowledge) {
+  const auto frame = frameOf(180, 130, randomMask(180, 130, 7, 5), 7);
+  using Visit = std::tuple<int, int, int>;
+  std::vector<Visit> visits[2];
+  for (const bool told : {false, true}) {
+    RegionQueue queue(64);
+    queue.setPriorities(randomPriorities(7, 5));
+    queue.beginFrame(frame, {},
+                     told ? std::make_shared<const std::vector<std::uint8_t>>(frame->ids.size()) : nullptr);
+    for (const Job& job : drain(queue))
+      forEachPixel(job, [&](int x, int y) { visits[told].push_back({job.begin.level, x, y}); });
+  }
+  EXPECT_EQ(visits[0], visits[1]);
+}
+
+TEST(RegionQueue, RefreshingIsOneLevelMoreToInhibition) {
+  const auto frame = twoSquares();
+  RegionQueue queue(64);
+  queue.beginFrame(frame, {}, std::make_shared<const std::vector<std::uint8_t>>(frame->ids.size(), 7));
+  for (const Job& job : drain(queue)) {
+    const int reductions = job.begin.level - 1 + (job.refresh ? 1 : 0);
+    EXPECT_EQ(job.priority, std::ldexp(1.0f, -reductions));
+  }
+}
+
 TEST(RegionQueue, LevelsOfAnObjectComeInOrderFromItsStartLevel) {
   const auto frame = frameOf(200, 150, randomMask(200, 150, 6, 4), 6);
   RegionQueue queue(32);

@@ -40,6 +40,10 @@ void splat(CorrectionLayer& layer, const Placed& p) {
   }
 }
 
+int rankedLevel(const Placed& p) {
+  return p.warped ? core::effectiveLevel(p.sample.level, p.age) : p.sample.level;
+}
+
 /// Smaller is better; nothing where the sample does not reach the pixel.
 using Order = std::tuple<int, int, int, int, int, int, int, int, int, int, int>;
 std::optional<Order> orderAt(const core::FrameSnapshot& frame, const Placed& p, int x, int y) {
@@ -51,7 +55,7 @@ std::optional<Order> orderAt(const core::FrameSnapshot& frame, const Placed& p, 
   if (std::abs(dx) > half || std::abs(dy) > half) return std::nullopt;
   const bool exact = !p.warped && dx == 0 && dy == 0;
   return Order{exact ? 0 : 1,
-               exact ? 0 : -p.sample.level,
+               exact ? 0 : -rankedLevel(p),
                p.warped ? 1 : 0,
                dx * dx + dy * dy,
                cy,
@@ -75,6 +79,8 @@ const Placed* bestAt(const core::FrameSnapshot& frame, const std::vector<Placed>
 
 void expectShows(CorrectionLayer& layer, const core::FrameSnapshot& frame, const std::vector<Placed>& all) {
   const auto pixels = layer.pixels();
+  const std::vector<std::uint8_t> levels = layer.levels();
+  ASSERT_EQ(levels.size(), pixels.size());
   std::uint32_t covered = 0, exact = 0;
   for (int y = 0; y < layer.height(); ++y) {
     for (int x = 0; x < layer.width(); ++x) {
@@ -83,11 +89,13 @@ void expectShows(CorrectionLayer& layer, const core::FrameSnapshot& frame, const
       ASSERT_EQ(best != nullptr, shown != nullptr) << x << ", " << y;
       if (!best) {
         ASSERT_EQ(pixels[frame.index(x, y)], Vec4(0)) << x << ", " << y;
+        ASSERT_EQ(levels[frame.index(x, y)], 0);
         continue;
       }
       ++covered;
       const bool isExact = !best->warped && best->sample.x == x && best->sample.y == y;
       exact += isExact;
+      ASSERT_EQ(levels[frame.index(x, y)], isExact ? core::Lattice::kMaxLevel + 1 : rankedLevel(*best));
       ASSERT_EQ(layer.isExact(x, y), isExact) << x << ", " << y;
       ASSERT_EQ(pixels[frame.index(x, y)], Vec4(best->sample.correction, 0)) << x << ", " << y;
       ASSERT_EQ(shown->level, best->sample.level);
@@ -121,7 +129,7 @@ std::vector<Placed> randomSamples(const core::FrameSnapshot& frame, int count, s
                  static_cast<float>(upTo(4 * (h + 40))) / 4 - 20};
       p.sample.id = blockId(upTo(w), upTo(h));
       p.footprint = upTo(4) == 0 ? 1 + 2 * upTo(81) : 1 + 2 * upTo(8);
-      p.age = upTo(4);
+      p.age = upTo(2) == 0 ? upTo(4) : upTo(60);
     }
     // Decided by what was traced, as a tracer's is.
     p.sample.thread = static_cast<std::uint8_t>((p.sample.x + p.sample.level) % 5);
