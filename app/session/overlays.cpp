@@ -226,21 +226,22 @@ std::vector<std::uint32_t> countsOf(const core::ImageGray& values) {
 /// Whole numbers: all but saliency and importance.
 bool isCounted(Aov aov) { return aov != Aov::saliency && aov != Aov::importance; }
 
-/// scale.color of every value; whole numbers are looked up, since there are few of them.
+/// scale.color of every value, looked up: of whole numbers there are few, and of a ramp a screen shows fewer
+/// colours than kRampColors.
 void paint(const core::ImageGray& values, const AovScale& scale, core::ImageRgba8& picture) {
+  constexpr int kRampColors = 1024;
   const auto& from = values.pixels();
+  if (from.empty()) return;
+  const auto [least, most] = std::minmax_element(from.begin(), from.end());
+  const float first = *least, span = *most - first;
+  const float each = isCounted(scale.aov()) || span == 0 ? 1 : span / (kRampColors - 1);
   std::vector<core::Rgba8> colors;
-  float first = 0;
-  if (isCounted(scale.aov()) && !from.empty()) {
-    const auto [least, most] = std::minmax_element(from.begin(), from.end());
-    first = *least;
-    for (int value = static_cast<int>(*least); value <= static_cast<int>(*most); ++value)
-      colors.push_back(scale.color(static_cast<float>(value)));
-  }
-  const auto color = [&](float value) {
-    return colors.empty() ? scale.color(value) : colors[static_cast<std::size_t>(value - first)];
-  };
-  std::transform(from.begin(), from.end(), picture.pixels().begin(), color);
+  for (int i = 0; i <= std::lround(span / each); ++i)
+    colors.push_back(scale.color(first + each * static_cast<float>(i)));
+  const float perValue = 1 / each;
+  std::transform(from.begin(), from.end(), picture.pixels().begin(), [&](float value) {
+    return colors[static_cast<std::size_t>((value - first) * perValue + 0.5f)];
+  });
 }
 
 }  // namespace
