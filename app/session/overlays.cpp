@@ -140,14 +140,18 @@ std::vector<std::uint8_t> splatEdges(const render::CorrectionLayer& layer) {
   const int width = layer.width(), height = layer.height();
   std::vector<std::uint8_t> edges;
   edges.reserve(static_cast<std::size_t>(width) * height);
+  // Each pixel is looked up once; the last column and row have no neighbour but themselves.
+  std::vector<const Splat*> row, below(static_cast<std::size_t>(width) + 1);
+  const auto look = [&](int y) {
+    for (int x = 0; x < width; ++x) below[static_cast<std::size_t>(x)] = layer.shownAt(x, y);
+    below.back() = width > 0 ? below[static_cast<std::size_t>(width) - 1] : nullptr;
+  };
+  if (height > 0) look(0);
   for (int y = 0; y < height; ++y) {
-    const Splat* here = layer.shownAt(0, y);
-    for (int x = 0; x < width; ++x) {
-      const Splat* right = x + 1 < width ? layer.shownAt(x + 1, y) : here;
-      const Splat* below = y + 1 < height ? layer.shownAt(x, y + 1) : here;
-      edges.push_back(here != nullptr && (right != here || below != here));
-      here = right;
-    }
+    row = below;
+    if (y + 1 < height) look(y + 1);
+    for (std::size_t x = 0; x + 1 < row.size(); ++x)
+      edges.push_back(row[x] != nullptr && (row[x + 1] != row[x] || below[x] != row[x]));
   }
   return edges;
 }
