@@ -18,6 +18,7 @@ OverlayView::Source OverlayView::sourceOf(Aov aov) const {
       break;
     case Aov::validity:
       source.delta = loop_.settings().delta;
+      source.cached = loop_.cache().stored();
       [[fallthrough]];
     case Aov::level:
     case Aov::thread:

@@ -38,6 +38,7 @@ class OverlayView {
     Aov aov;
     std::uint64_t epoch = 0;    ///< of the frame: ids, and what was warped into it
     std::uint64_t samples = 0;  ///< traced so far
+    std::uint64_t cached = 0;   ///< SampleCache::stored: late samples of older cameras, too
     float delta = 0;
     std::shared_ptr<const attention::AttentionSnapshot> analysis;
     std::vector<std::uint32_t> ranks;

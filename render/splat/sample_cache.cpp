@@ -139,6 +139,7 @@ std::size_t SampleCache::add(const core::SampleBatch& batch, std::uint64_t camer
     ++size_;
     ++stored;
   }
+  stored_ += stored;
   return stored;
 }
 

@@ -77,6 +77,8 @@ class SampleCache {
   WarpResult warp(const core::FrameSnapshot& frame, CorrectionLayer& layer);
 
   std::size_t size() const { return size_; }
+  /// Samples that add() has ever stored. Between two cameras the cache changes with this number only.
+  std::uint64_t stored() const { return stored_; }
   /// Memory of the pages, those kept for reuse included; <= maxBytes.
   std::size_t bytes() const { return allocatedPages_ * sizeof(Page); }
   /// Samples of an object's level.
@@ -177,6 +179,7 @@ class SampleCache {
   const std::size_t maxPages_;
   std::size_t allocatedPages_ = 0;
   std::size_t size_ = 0;
+  std::uint64_t stored_ = 0;
   std::uint64_t cameraAge_ = 0;
   float pixelsPerRadian_ = 0;
   std::deque<Generation> generations_;  ///< oldest first

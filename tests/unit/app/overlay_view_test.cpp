@@ -49,6 +49,11 @@ class OverlayViews : public testing::TestWithParam<int> {
 };
 
 TEST_P(OverlayViews, AreComputedWhenWhatTheyShowHasChanged) {
+  core::SampleBatch late;
+  loop_.onBatch = [&](const core::SampleBatch& batch) {
+    if (late.samples.empty() && !batch.samples.empty())
+      late = {batch.epoch, batch.sequence, {batch.samples.front()}};
+  };
   step(400);
   EXPECT_TRUE(computes());
   EXPECT_FALSE(computes()) << "nothing has changed";
@@ -65,6 +70,8 @@ TEST_P(OverlayViews, AreComputedWhenWhatTheyShowHasChanged) {
   loop_.setDelta(1e-4f);
   step(0);
   EXPECT_EQ(computes(), aov_ == Aov::validity) << "another delta";
+  ASSERT_EQ(loop_.cache().add(late, late.epoch), 1u);
+  EXPECT_EQ(computes(), aov_ == Aov::validity) << "a late sample of an older camera";
   loop_.attend(1);
   step(0);
   EXPECT_EQ(computes(), tellsOfAnalysis(aov_) || aov_ == Aov::rank) << "a click";
