@@ -9,7 +9,8 @@ namespace saccade::app {
 namespace {
 
 constexpr std::chrono::milliseconds kStopPollInterval{20};
-constexpr int kLateBatches = 32;  // some tenths of a millisecond of splatting
+// Enough to cache what a tracer did in the time of a frame.
+constexpr std::chrono::milliseconds kLateTime{2};
 
 attention::AttentionOptions seeded(attention::AttentionOptions options, std::uint32_t seed) {
   options.seed = seed;
@@ -106,15 +107,17 @@ void FrameLoop::correct(Clock::time_point start, const FrameBudget& budget, cons
   correctUntil(start + std::chrono::duration_cast<Clock::duration>(time), stop);
 }
 
-// Step 6 against the wall clock. What waits in the queue is taken even when drawing used up the time
-// (bounded), else the tracers' work for a frame that is too slow would never be seen.
+// Step 6 against the wall clock. What waits in the queue is taken even when drawing used up the time, else
+// the tracers' work for a frame that is too slow would never be seen. All of it, but for the bound: a queue
+// that grew from frame to frame would give older and older samples.
 void FrameLoop::correctUntil(Clock::time_point deadline, const std::stop_token& stop) {
-  for (int late = 0; late < kLateBatches && !stop.stop_requested();) {
+  const Clock::time_point latest = std::max(deadline, Clock::now()) + kLateTime;
+  while (!stop.stop_requested()) {
     const Clock::time_point now = Clock::now();
     auto batch =
         now < deadline ? samples_.popUntil(std::min(deadline, now + kStopPollInterval)) : samples_.tryPop();
     if (batch) take(std::move(*batch));
-    if (now >= deadline) late = batch ? late + 1 : kLateBatches;
+    if (now >= latest || (now >= deadline && !batch)) return;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "app/session/camera_path.h"
 #include "tests/unit/app/fixtures.h"
@@ -248,6 +249,24 @@ TEST_F(LoopTest, AFullCacheKeepsWhatWasHandedOutFirstOfTheOldestAge) {
     }
   }
   EXPECT_EQ(ofPrefix, kept.size());
+}
+
+TEST_F(LoopTest, FramesThatAreAllLateDoNotFallBehindTheirTracers) {
+  FrameLoopOptions options{.threads = 2};
+  options.corrective.jobSize = 1;  // many batches a frame
+  FrameLoop loop(workspace_, *gl_.renderer, options);
+  std::uint64_t newest = 0, batches = 0;
+  loop.onBatch = [&](const core::SampleBatch& batch) { newest = std::max(newest, batch.epoch), ++batches; };
+  const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
+  std::uint64_t leastLag = ~std::uint64_t{0};
+  for (int i = 0; i < 60; ++i) {
+    loop.step(path.at(i / 25.0), size_, FrameBudget::untilDeadline(std::chrono::milliseconds(0)));
+    // In one of the last frames at least: any single one may be interrupted.
+    if (i >= 40) leastLag = std::min(leastLag, loop.frame().epoch - newest);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GT(batches, 6000u);
+  EXPECT_LE(leastLag, 1u);
 }
 
 TEST_F(LoopTest, SamplesGoWhereWarpedOnesTellLeast) {
