@@ -4,12 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <random>
 #include <regex>
 #include <thread>
+#include <utility>
 
 #include "core/error.h"
 #include "core/image_io.h"
@@ -207,58 +209,90 @@ core::SampleBatch batchOf(int run, int i) {
   return batch;
 }
 
-[[noreturn]] void writeUntilKilled(const std::filesystem::path& file, const app::SessionInfo& info, int run) {
+/// Says through `told` after each commit how many frames are in the file.
+[[noreturn]] void writeUntilKilled(const std::filesystem::path& file, const app::SessionInfo& info, int run,
+                                   int told) {
   app::SessionWriter writer(file, info, std::chrono::milliseconds(1));
   for (int i = 0;; ++i) {
     writer.write(batchOf(run, i));
     writer.write(numbered(run, i));
-    writer.commitIfDue();
+    if (!writer.commitIfDue()) continue;
+    const int committed = i + 1;
+    if (write(told, &committed, sizeof committed) != sizeof committed) _exit(1);
   }
 }
 
-// One file for all runs: what a killed run left is replaced by the next, or stays, never a mixture.
+/// A run that is killed at any moment after `commits` commits. Returns how many frames it had committed by
+/// the last of them.
+int runAndKill(const std::filesystem::path& file, const app::SessionInfo& info, int run, int commits,
+               std::chrono::microseconds later) {
+  std::array<int, 2> told{};
+  EXPECT_EQ(pipe(told.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      writeUntilKilled(file, info, run, told[1]);
+    } catch (...) {
+      _exit(1);
+    }
+  }
+  EXPECT_GT(child, 0);
+  close(told[1]);
+  int committed = 0;
+  for (int i = 0; i < commits; ++i)
+    EXPECT_EQ(read(told[0], &committed, sizeof committed), static_cast<ssize_t>(sizeof committed))
+        << "the writer failed by itself in run " << run;
+  std::this_thread::sleep_for(later);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  close(told[0]);
+  EXPECT_TRUE(WIFSIGNALED(status)) << "the writer failed by itself in run " << run;
+  return committed;
+}
+
+/// Reads all of a file that holds whole frames of one run. Returns the run, 0 without frames, and their
+/// number.
+std::pair<int, int> framesOfOneRun(app::SessionReader& session) {
+  int i = 0, run = 0;
+  while (const auto frame = session.nextFrame()) {
+    if (i == 0) run = static_cast<int>(frame->camera.eye.x);
+    EXPECT_EQ(frame->hash, numbered(run, i).hash);
+    EXPECT_EQ(frame->tiles, numbered(run, i).tiles);
+    const auto batch = session.nextBatch();
+    EXPECT_TRUE(batch) << "frame " << i << " of run " << run;
+    if (!batch) break;
+    EXPECT_EQ(app::encodeSamples(batch->samples), app::encodeSamples(batchOf(run, i).samples));
+    ++i;
+  }
+  EXPECT_EQ(session.damage(), "");
+  return {run, i};
+}
+
+// One file for all runs: what a killed run left is replaced by the next, or stays, never a mixture. Half of
+// the runs are killed while they open the file, the others after a few commits, all of which are there then.
 TEST(RecordingFaults, KilledAHundredTimesTheFileHoldsWholeFramesOfOneRun) {
   const std::filesystem::path file = output("killed.session");
   const app::Headless gl(tests::runOn("osmesa"), tests::cornell());
   const app::SessionInfo info = tests::infoOfCornell(gl);
   std::mt19937 random(11);
-  int runsWithFrames = 0;
-  for (int run = 1; run <= 100; ++run) {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      try {
-        writeUntilKilled(file, info, run);
-      } catch (...) {
-        _exit(1);
-      }
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 60000));
-    kill(child, SIGKILL);
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "the writer failed by itself in run " << run;
+  bool wasThere = false;
+  for (int run = 1; run <= 100 && !HasFailure(); ++run) {
+    const int commits = run % 2 == 0 ? 1 + static_cast<int>(random() % 6) : 0;
+    const int committed = runAndKill(file, info, run, commits, std::chrono::microseconds(random() % 20000));
     std::optional<app::SessionReader> session;
     try {
       session.emplace(file);
-    } catch (const core::Error&) {
-      EXPECT_EQ(runsWithFrames, 0) << "a session was there before run " << run;
+    } catch (const core::Error& e) {
+      EXPECT_FALSE(wasThere) << "a session was there before run " << run << ": " << e.what();
       continue;
     }
-    int i = 0, of = 0;
-    while (const auto frame = session->nextFrame()) {
-      if (i == 0) of = static_cast<int>(frame->camera.eye.x);
-      EXPECT_EQ(frame->hash, numbered(of, i).hash);
-      EXPECT_EQ(frame->tiles, numbered(of, i).tiles);
-      const auto batch = session->nextBatch();
-      ASSERT_TRUE(batch) << "frame " << i << " of run " << run;
-      EXPECT_EQ(app::encodeSamples(batch->samples), app::encodeSamples(batchOf(of, i).samples));
-      ++i;
-    }
-    EXPECT_EQ(session->damage(), "");
-    runsWithFrames += i > 0 && of == run ? 1 : 0;
+    wasThere = true;
+    const auto [of, frames] = framesOfOneRun(*session);
+    if (committed == 0) continue;
+    EXPECT_EQ(of, run);
+    EXPECT_GE(frames, committed) << "run " << run;
   }
-  EXPECT_GT(runsWithFrames, 10);
 }
 
 TEST(RecordingFaults, AKilledWalkReplaysTheFramesItShowed) {
@@ -366,7 +400,8 @@ TEST(ReplayCommand, VerifiesNamesComparesAndWrites) {
   tests::alter(file, "UPDATE session SET value = 'another' WHERE name = 'cpu'");
   const Ran elsewhere = saccade("replay " + quoted(file) + " --verify");
   EXPECT_EQ(elsewhere.status, 0) << elsewhere.err;
-  EXPECT_NE(elsewhere.err.find("another renderer, context, CPU or version"), std::string::npos) << elsewhere.err;
+  EXPECT_NE(elsewhere.err.find("another renderer, context, CPU or version"), std::string::npos)
+      << elsewhere.err;
 }
 
 TEST(SessionFormat, TheDocumentedQueriesRun) {
