@@ -50,26 +50,34 @@ double secondsSince(Clock::time_point start) { return secondsBetween(start, Cloc
 
 int panelPixels(double uiScale) { return static_cast<int>(std::lround(kPanelWidth * uiScale)); }
 
+std::shared_ptr<const Workspace> openVisit(const WalkOptions& visit, const std::stop_token& stop,
+                                           const OpeningReport& report,
+                                           const SceneOpener::Drawable& drawable) {
+  const std::shared_ptr<Workspace> workspace = readWorkspace(visit.scene, bakeOf(visit), stop, report);
+  drawable(workspace, render::makeDrawList(workspace->scene));
+  finishWorkspace(*workspace, stop, report);
+  return workspace;
+}
+
 /// One window's life, whichever scenes it shows. Members are in the order in which they depend on one
 /// another.
 class Viewer {
  public:
-  /// `kept`: from `settings`.
+  /// `kept`: from `settings`. `opener`: opens the scene that was asked for already, if one was.
   Viewer(const WalkOptions& options, const ViewerObserver& afterFrame, SettingsFile& settings,
-         KeptSettings kept)
+         KeptSettings kept, double uiScale, SceneOpener& opener)
       : options_(options),
         afterFrame_(afterFrame),
         settings_(settings),
         kept_(std::move(kept)),
         panel_(firstPanel(options, kept_)),
-        uiScale_(options.uiScale ? *options.uiScale : render::displayScale()),
+        uiScale_(uiScale),
         window_(firstSize().width, firstSize().height, "Saccade"),
         presenter_(window_.context()),
         imgui_(window_, static_cast<float>(uiScale_)),
-        opener_(openVisit) {
+        opener_(opener) {
     if (kept_.fullscreen && !options.given.size) window_.setFullscreen(*kept_.fullscreen);
     startLook_ = look();
-    if (!options.scene.path.empty()) opener_.open(options);
   }
 
   /// Returns the exit status.
@@ -101,15 +109,6 @@ class Viewer {
   WindowLook look() const {
     const auto [width, height] = window_.windowedSize();
     return {{width, height}, window_.fullscreen(), panel_};
-  }
-
-  static std::shared_ptr<const Workspace> openVisit(const WalkOptions& visit, const std::stop_token& stop,
-                                                    const OpeningReport& report,
-                                                    const SceneOpener::Drawable& drawable) {
-    const std::shared_ptr<Workspace> workspace = readWorkspace(visit.scene, bakeOf(visit), stop, report);
-    drawable(workspace, render::makeDrawList(workspace->scene));
-    finishWorkspace(*workspace, stop, report);
-    return workspace;
   }
 
   void frame() {
@@ -367,7 +366,7 @@ class Viewer {
   render::Presenter presenter_;
   render::ImguiLayer imgui_;
   WindowLook startLook_;
-  SceneOpener opener_;
+  SceneOpener& opener_;
   std::optional<BaseView> ahead_;   ///< of the scene that is being opened, once scene and maps are there
   bool uploading_ = false;          ///< in this frame: the next one comes without a pause
   std::optional<SceneView> scene_;  ///< nothing: none is open
@@ -393,7 +392,13 @@ int runViewer(const WalkOptions& asked, const ViewerObserver& afterFrame) {
   KeptSettings kept = settings.load();
   const WalkOptions options = withKept(asked, kept);
   render::setSoftwareRasterThreads(rasterThreads(std::max(1, tracerThreads(options.run))));
-  return Viewer(options, afterFrame, settings, std::move(kept)).run();
+  // Asked in any case: without a display nothing is to be read.
+  const double displayScale = render::displayScale();
+  SceneOpener opener(openVisit);
+  if (!options.scene.path.empty()) opener.open(options);  // read while the window comes up
+  return Viewer(options, afterFrame, settings, std::move(kept), options.uiScale.value_or(displayScale),
+                opener)
+      .run();
 }
 
 }  // namespace saccade::app
