@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -31,8 +30,6 @@ class Process {
     argv.push_back(nullptr);
     pid_ = fork();
     if (pid_ != 0) return;
-    // GLX unloads Mesa's driver at exit: LeakSanitizer cannot name what it left (docs/sanitizers.md).
-    setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
     execv(argv[0], argv.data());
     _exit(127);
   }
