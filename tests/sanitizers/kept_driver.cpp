@@ -1,6 +1,6 @@
-// Keeps Mesa's software driver loaded until the process ends. GLX unloads it with the last window: LeakSanitizer
-// cannot name afterwards what it left, and ThreadSanitizer ends a process that unloads a library which a
-// suppression names. Part of the programs of sanitizer builds only.
+// Keeps Mesa's software driver loaded until the process ends. GLX unloads it with the last window:
+// LeakSanitizer cannot name afterwards what it left, and ThreadSanitizer ends a process that unloads a
+// library which a suppression names. Part of the programs of sanitizer builds only.
 #include <dlfcn.h>
 
 #include <cstdio>
